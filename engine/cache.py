@@ -1,0 +1,61 @@
+"""Where numba keeps compiled kernels: one folder for each state of the engine's sources.
+
+Numba looks only at the file a kernel stands in, while the laws a kernel inlines stand in others. So the
+folder's name carries a fingerprint of the whole package: an edited law never meets a stale kernel, and an
+edited comment or docstring costs no compilation.
+"""
+
+import ast
+import hashlib
+import os
+from pathlib import Path
+
+import numba
+
+SOURCES = Path(__file__).parent
+FOLDERS_KEPT = 8
+
+
+def fingerprint(sources: Path = SOURCES) -> str:
+    """Hash of what the package's sources mean: their syntax trees without docstrings (16 hex digits)."""
+    digest = hashlib.sha256()
+    for path in sorted(sources.glob("*.py")):
+        digest.update(path.name.encode())
+        digest.update(ast.dump(_without_docstrings(ast.parse(path.read_text("utf-8")))).encode())
+    return digest.hexdigest()[:16]
+
+
+def _without_docstrings(tree: ast.Module) -> ast.Module:
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node, clean=False):
+            node.body = node.body[1:]
+    return tree
+
+
+def use_own_folder(mark: str) -> None:
+    """Point numba's cache to a folder of this fingerprint; call before the first kernel is decorated.
+
+    The folder lies in `NUMBA_CACHE_DIR` if that is set, else in the user's cache folder. Where neither can
+    be written, numba's own choice stays.
+    """
+    base = Path(os.environ.get("NUMBA_CACHE_DIR") or _user_cache() / "jamsweep" / "numba")
+    folder = base / f"engine-{mark}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        os.utime(folder)
+        _forget_oldest(base)
+    except OSError:
+        return
+    if os.access(folder, os.W_OK):
+        numba.config.CACHE_DIR = str(folder)  # type: ignore[attr-defined]  # numba sets its options by name
+
+
+def _user_cache() -> Path:
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+
+
+def _forget_oldest(base: Path) -> None:
+    folders = sorted(base.glob("engine-*"), key=lambda f: f.stat().st_mtime, reverse=True)
+    for folder in folders[FOLDERS_KEPT:]:
+        for path in folder.rglob("*.nb[ic]"):
+            path.unlink(missing_ok=True)

@@ -1,0 +1,229 @@
+"""The one place where laws meet pairs of persons and walls.
+
+Pairs are taken in blocks that fit the first-level cache, each block in four plain loops: gather, arithmetic
+that the compiler vectorises, scatter, and a scalar loop over the few pairs that touch.
+"""
+
+import math
+
+from numba import njit
+
+from engine.laws import drive, looks, normal, remembers, sliding, social, turns, vision
+
+BLOCK = 512  # pairs; a constant, so that the compiler sees that the scratch rows do not overlap
+ROWS = 7  # of scratch: dx, dy, r_i + r_j, desired directions of i and j
+
+
+@njit(cache=True, error_model="numpy")
+def forces(model, scene, people, n, near, dt, scratch, touching):
+    """Sum all forces and torques on the first n persons into `people`.
+
+    Parameters
+    ----------
+    dt : time over which tangential springs stretch, s; 0 when the forces are only looked at
+    scratch : (ROWS * BLOCK,) float64
+    touching : (BLOCK,) uint32
+
+    Returns
+    -------
+    float
+        Largest overlap, m.
+    """
+    _driving(model, scene.exits, people, n)
+    overlap = _between_persons(model, people, near, dt, scratch, touching)
+    return max(overlap, _at_walls(model, scene, people, near, dt))
+
+
+@njit(cache=True, error_model="numpy")
+def _driving(model, exits, people, n):
+    """Start the sums with the driving force; the desired direction is that of the nearest exit."""
+    for i in range(n):
+        ex, ey = desired_direction(exits, people.x[i], people.y[i], people.radius[i])
+        people.ex[i], people.ey[i] = ex, ey
+        people.fx[i] = drive(model.drive, people.mass[i], people.v_d[i], ex, people.vx[i])
+        people.fy[i] = drive(model.drive, people.mass[i], people.v_d[i], ey, people.vy[i])
+        people.torque[i] = 0.0
+
+
+@njit(cache=True, error_model="numpy")
+def desired_direction(exits, x, y, radius):
+    """Towards the nearest point of the nearest exit, its line shortened by the radius at both ends.
+
+    Straight out once beyond the line; no direction where there is no exit.
+    """
+    ex, ey, nearest = 0.0, 0.0, math.inf
+    for k in range(exits.shape[0]):
+        x0, y0, ux, uy, length = exits[k, 0], exits[k, 1], exits[k, 2], exits[k, 3], exits[k, 4]
+        nx, ny = exits[k, 5], exits[k, 6]
+        along = (x - x0) * ux + (y - y0) * uy
+        beyond = (x - x0) * nx + (y - y0) * ny
+        aim = min(max(along, min(radius, 0.5 * length)), max(length - radius, 0.5 * length))
+        dx, dy = x0 + aim * ux - x, y0 + aim * uy - y
+        distance = math.sqrt(dx * dx + dy * dy)
+        if distance < nearest:
+            nearest = distance
+            if beyond >= 0.0 and 0.0 <= along <= length:
+                ex, ey = nx, ny
+            else:
+                ex, ey = dx / distance, dy / distance
+    return ex, ey
+
+
+@njit(cache=True, error_model="numpy")
+def _between_persons(model, people, near, dt, s, touching):
+    deepest = 0.0
+    for first in range(0, near.i.size, BLOCK):
+        count = min(BLOCK, near.i.size - first)
+        i, j = near.i[first : first + count], near.j[first : first + count]
+        _gather(model, people, i, j, count, s)
+        _repel(model, count, s)
+        _scatter(people, i, j, count, s)
+        overlap = _contacts(model, people, i, j, near.slip[first : first + count], count, dt, s, touching)
+        deepest = max(deepest, overlap)
+    return deepest
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _gather(model, people, i, j, count, s):
+    x, y, radius, ex, ey = people.x, people.y, people.radius, people.ex, people.ey
+    for p in range(count):
+        s[p] = x[i[p]] - x[j[p]]
+        s[BLOCK + p] = y[i[p]] - y[j[p]]
+        s[2 * BLOCK + p] = radius[i[p]] + radius[j[p]]
+    if looks(model.vision):
+        for p in range(count):
+            s[3 * BLOCK + p] = ex[i[p]]
+            s[4 * BLOCK + p] = ey[i[p]]
+            s[5 * BLOCK + p] = ex[j[p]]
+            s[6 * BLOCK + p] = ey[j[p]]
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _repel(model, count, s):
+    """Turn scratch into n_x, n_y, gap, social force on i along n, social force on j along -n."""
+    for p in range(count):
+        dx, dy = s[p], s[BLOCK + p]
+        distance = math.sqrt(dx * dx + dy * dy)
+        nx, ny = dx / distance, dy / distance
+        gap = distance - s[2 * BLOCK + p]
+        force = social(model.social, gap)
+        on_i = force * vision(model.vision, -(s[3 * BLOCK + p] * nx + s[4 * BLOCK + p] * ny))
+        on_j = force * vision(model.vision, s[5 * BLOCK + p] * nx + s[6 * BLOCK + p] * ny)
+        s[p], s[BLOCK + p], s[2 * BLOCK + p] = nx, ny, gap
+        s[3 * BLOCK + p], s[4 * BLOCK + p] = on_i, on_j
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _scatter(people, i, j, count, s):
+    """Add the social forces; those of one i are summed in registers, since its pairs stand together."""
+    fx, fy = people.fx, people.fy
+    of, sum_x, sum_y = i[0], 0.0, 0.0
+    for p in range(count):
+        if i[p] != of:
+            fx[of] += sum_x
+            fy[of] += sum_y
+            of, sum_x, sum_y = i[p], 0.0, 0.0
+        nx, ny = s[p], s[BLOCK + p]
+        sum_x += s[3 * BLOCK + p] * nx
+        sum_y += s[3 * BLOCK + p] * ny
+        fx[j[p]] -= s[4 * BLOCK + p] * nx
+        fy[j[p]] -= s[4 * BLOCK + p] * ny
+    fx[of] += sum_x
+    fy[of] += sum_y
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _contacts(model, people, i, j, slip, count, dt, s, touching):
+    """Normal and tangential forces of the pairs in touch; a spring ends with its contact."""
+    touches = 0
+    for p in range(count):  # without a branch: most pairs do not touch
+        touching[touches] = p
+        touches += s[2 * BLOCK + p] < 0.0
+        if remembers(model.sliding):
+            slip[p] = slip[p] if s[2 * BLOCK + p] < 0.0 else 0.0
+    deepest = 0.0
+    for t in range(touches):
+        p = touching[t]
+        a, b, overlap = i[p], j[p], -s[2 * BLOCK + p]
+        nx, ny = s[p], s[BLOCK + p]
+        deepest = max(deepest, overlap)
+        radius = people.radius[a] * people.radius[b] / (people.radius[a] + people.radius[b])
+        mass = people.mass[a] * people.mass[b] / (people.mass[a] + people.mass[b])
+        ux, uy = people.vx[a] - people.vx[b], people.vy[a] - people.vy[b]
+        v_n = ux * nx + uy * ny
+        v_t = uy * nx - ux * ny
+        if turns(model.rotation):
+            v_t -= people.radius[a] * people.spin[a] + people.radius[b] * people.spin[b]
+        F_n = normal(model.normal, overlap, radius, mass, v_n)
+        F_t, slip[p] = sliding(model.sliding, overlap, radius, mass, v_t, F_n, slip[p] + v_t * dt)
+        fx, fy = F_n * nx - F_t * ny, F_n * ny + F_t * nx
+        people.fx[a] += fx
+        people.fy[a] += fy
+        people.fx[b] -= fx
+        people.fy[b] -= fy
+        people.torque[a] -= people.radius[a] * F_t
+        people.torque[b] -= people.radius[b] * F_t
+    return deepest
+
+
+@njit(cache=True, error_model="numpy")
+def _at_walls(model, scene, people, near, dt):
+    """Forces of the walls: bodies of infinite mass and radius, each acting through its closest point."""
+    deepest = 0.0
+    for p in range(near.wall_i.size):
+        i, w = near.wall_i[p], near.wall[p]
+        dx, dy, counts = _from_wall(scene, w, people.x[i], people.y[i])
+        distance = math.sqrt(dx * dx + dy * dy)
+        nx, ny = dx / distance, dy / distance
+        overlap = people.radius[i] - distance
+        if not counts:
+            near.wall_slip[p] = 0.0
+            continue
+        F_n, F_t = social(model.wall_social, -overlap), 0.0
+        if overlap > 0.0:
+            deepest = max(deepest, overlap)
+            v_n = people.vx[i] * nx + people.vy[i] * ny
+            v_t = people.vy[i] * nx - people.vx[i] * ny
+            if turns(model.rotation):
+                v_t -= people.radius[i] * people.spin[i]
+            pressing = normal(model.wall_normal, overlap, people.radius[i], people.mass[i], v_n)
+            slip = near.wall_slip[p] + v_t * dt
+            F_t, near.wall_slip[p] = sliding(
+                model.wall_sliding, overlap, people.radius[i], people.mass[i], v_t, pressing, slip
+            )
+            F_n += pressing
+            people.torque[i] -= people.radius[i] * F_t
+        else:
+            near.wall_slip[p] = 0.0
+        people.fx[i] += F_n * nx - F_t * ny
+        people.fy[i] += F_n * ny + F_t * nx
+    return deepest
+
+
+@njit(cache=True, error_model="numpy")
+def _from_wall(scene, w, x, y):
+    """From the wall's closest point to (x, y), and whether that point counts for this wall.
+
+    A corner that several walls share counts once, and only if it is the closest point of each of them.
+    """
+    dx, dy, end = _from_segment(scene.walls, w, x, y)
+    if end >= 0:
+        for k in range(scene.joints.shape[2]):
+            other = scene.joints[w, end, k]
+            if other < 0:
+                break
+            ox, oy, other_end = _from_segment(scene.walls, other, x, y)
+            if other_end < 0 or (ox - dx) ** 2 + (oy - dy) ** 2 > 1e-16 or other < w:
+                return dx, dy, False
+    return dx, dy, True
+
+
+@njit(cache=True, error_model="numpy")
+def _from_segment(walls, w, x, y):
+    """From the closest point of a segment to (x, y), and which end that point is (-1: neither)."""
+    dx, dy = x - walls[w, 0], y - walls[w, 1]
+    ux, uy, length = walls[w, 2], walls[w, 3], walls[w, 4]
+    along = dx * ux + dy * uy
+    end = 0 if along <= 0.0 else (1 if along >= length else -1)
+    along = min(max(along, 0.0), length)
+    return dx - along * ux, dy - along * uy, end

@@ -1,0 +1,197 @@
+"""The time loop: velocity Verlet, exits, lists, and the rules that end a run."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from engine.forces import BLOCK, ROWS, forces
+from engine.laws import turns
+from engine.neighbours import rebuilt
+
+RUNNING, ALL_OUT, BLOCKED, FROZEN, TIME_LIMIT, UNSTABLE = range(6)
+
+
+class Rules(NamedTuple):
+    """How a run is computed and when it ends."""
+
+    dt: float  # s
+    gap: float  # m, reach of the force between persons
+    wall_gap: float  # m, reach of the walls' force
+    skin: float  # m
+    last_step: int  # the time limit
+    patience: int  # steps without anybody getting out after which the exits are blocked
+
+
+class Clock(NamedTuple):
+    """Where a run stands."""
+
+    step: int  # -1 before the first forces are known
+    inside: int  # persons in the arrays
+    N_out: int
+    last_out: int  # step at which somebody got out
+    outcome: int
+    rebuilds: int
+    max_overlap: float  # m
+    max_speed: float  # m/s
+    culprit: int  # person with a number that is not finite; -1: none
+
+
+class Exits(NamedTuple):
+    """Who left, in the order of leaving; arrays (N,)."""
+
+    time: np.ndarray  # s
+    person: np.ndarray
+    x: np.ndarray  # m
+    y: np.ndarray  # m
+    door: np.ndarray  # number of the exit
+
+
+@njit(cache=True, error_model="numpy")
+def advance(model, scene, rules, people, near, exits, clock, until):
+    """Advance a run to step `until` or its end, by velocity Verlet (Lin et al. 2016, Eqs. 7-11).
+
+    Forces are evaluated with the half-step velocities (sub-step c). `people` and `exits` are changed in
+    place; the new lists and clock are returned. A run begins with a step of no length, which makes the
+    lists and the first forces.
+    """
+    step, n = clock.step, clock.inside
+    N_out, last_out, outcome, rebuilds = clock.N_out, clock.last_out, clock.outcome, clock.rebuilds
+    max_overlap, max_speed_squared, culprit = clock.max_overlap, clock.max_speed**2, clock.culprit
+    scratch, touching = np.empty(ROWS * BLOCK), np.empty(BLOCK + 1, np.uint32)
+    gap, wall_gap = rules.gap + rules.skin, rules.wall_gap + rules.skin
+    while step < until and outcome == RUNNING:
+        dt = rules.dt if step >= 0 else 0.0
+        _kick(model, people, n, 0.5 * dt)
+        crossed, gone = _drift(scene.exits, people, n, dt, step, exits, N_out)
+        step += 1
+        if crossed > 0:
+            N_out += crossed
+            last_out = step
+        if gone or _left_their_skin(people, n, rules.skin):
+            culprit = _first_not_finite(people, n)
+            if culprit >= 0:
+                outcome = UNSTABLE
+                break
+            moved_to, n = _compacted(scene.exits, people, n)
+            near = rebuilt(people, n, scene.walls, near, moved_to, gap, wall_gap)
+            rebuilds += 1
+        overlap = forces(model, scene, people, n, near, dt, scratch, touching)
+        max_overlap = max(max_overlap, overlap)
+        max_speed_squared = max(max_speed_squared, _kick(model, people, n, 0.5 * dt))
+        if N_out == people.x.size:
+            outcome = ALL_OUT
+        elif scene.exits.shape[0] > 0 and step - last_out >= rules.patience:
+            outcome = BLOCKED
+        elif step >= rules.last_step:
+            outcome = TIME_LIMIT
+    max_speed = np.sqrt(max_speed_squared)
+    return near, Clock(step, n, N_out, last_out, outcome, rebuilds, max_overlap, max_speed, culprit)
+
+
+@njit(cache=True, error_model="numpy")
+def _kick(model, people, n, time):
+    """Change the velocities by the forces over `time`; returns the largest squared speed."""
+    fastest = 0.0
+    for i in range(n):
+        people.vx[i] += time * people.fx[i] / people.mass[i]
+        people.vy[i] += time * people.fy[i] / people.mass[i]
+        fastest = max(fastest, people.vx[i] ** 2 + people.vy[i] ** 2)
+    if turns(model.rotation):
+        for i in range(n):
+            people.spin[i] += time * people.torque[i] / people.inertia[i]
+    return fastest
+
+
+@njit(cache=True, error_model="numpy")
+def _drift(lines, people, n, dt, step, exits, N_out):
+    """Move everybody by dt; log who crosses an exit, at the time and place interpolated in the step.
+
+    Returns
+    -------
+    int, bool
+        How many crossed, and whether anybody is now far enough out to leave the arrays.
+    """
+    crossed, gone = 0, False
+    for i in range(n):
+        x, y = people.x[i], people.y[i]
+        people.x[i] = x + dt * people.vx[i]
+        people.y[i] = y + dt * people.vy[i]
+        for k in range(lines.shape[0]):
+            before, after = _beyond(lines, k, x, y), _beyond(lines, k, people.x[i], people.y[i])
+            if before < 0.0 <= after and people.out[i] == 0:
+                part = before / (before - after)
+                at_x, at_y = x + part * dt * people.vx[i], y + part * dt * people.vy[i]
+                if _within(lines, k, at_x, at_y):
+                    place = N_out + crossed
+                    exits.time[place], exits.person[place] = (step + part) * dt, people.who[i]
+                    exits.x[place], exits.y[place], exits.door[place] = at_x, at_y, k
+                    people.out[i] = 1
+                    crossed += 1
+        gone |= _has_gone(lines, people, i)
+    return crossed, gone
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _beyond(lines, k, x, y):
+    """Distance beyond the line of exit k, m."""
+    return (x - lines[k, 0]) * lines[k, 5] + (y - lines[k, 1]) * lines[k, 6]
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _within(lines, k, x, y):
+    """Whether the point lies between the ends of exit k."""
+    return 0.0 <= (x - lines[k, 0]) * lines[k, 2] + (y - lines[k, 1]) * lines[k, 3] <= lines[k, 4]
+
+
+@njit(cache=True, error_model="numpy")
+def _has_gone(lines, people, i):
+    """Whether person i is out, and beyond every exit's line by as much as that exit lets people walk on."""
+    if people.out[i] == 0:
+        return False
+    for k in range(lines.shape[0]):
+        if _beyond(lines, k, people.x[i], people.y[i]) >= lines[k, 7]:
+            return True
+    return False
+
+
+@njit(cache=True, error_model="numpy")
+def _left_their_skin(people, n, skin):
+    """Whether somebody has moved half the skin since the lists were built, or is nowhere (nan)."""
+    moved = False
+    for i in range(n):
+        dx, dy = people.x[i] - people.listed_x[i], people.y[i] - people.listed_y[i]
+        moved |= not (dx * dx + dy * dy <= 0.25 * skin * skin)
+    return moved
+
+
+@njit(cache=True)
+def _first_not_finite(people, n):
+    for i in range(n):
+        if not np.isfinite(people.x[i] + people.y[i]):
+            return people.who[i]
+    return -1
+
+
+@njit(cache=True, error_model="numpy")
+def _compacted(lines, people, n):
+    """Close the gaps that the departed leave; returns everybody's new number (-1: gone) and how many stay."""
+    moved_to, stay = np.empty(n, np.int64), 0
+    for i in range(n):
+        if _has_gone(lines, people, i):
+            moved_to[i] = -1
+            continue
+        moved_to[i] = stay
+        if stay != i:
+            _move(people, i, stay)
+        stay += 1
+    return moved_to, stay
+
+
+@njit(cache=True)
+def _move(people, i, to):
+    people.who[to], people.out[to] = people.who[i], people.out[i]
+    people.x[to], people.y[to] = people.x[i], people.y[i]
+    people.vx[to], people.vy[to], people.spin[to] = people.vx[i], people.vy[i], people.spin[i]
+    people.radius[to], people.mass[to], people.inertia[to] = people.radius[i], people.mass[i], people.inertia[i]
+    people.v_d[to] = people.v_d[i]

@@ -1,0 +1,117 @@
+"""Models: named sets of laws."""
+
+from typing import Any, NamedTuple
+
+from engine import laws
+from engine.errors import require
+from engine.laws import Absent, Cosine, Coulomb, Exponential, Hertz, Kinetic, Mindlin, MindlinReset, Relaxation, Turning
+
+
+class Model(NamedTuple):
+    """One law of each kind; the types of the fields are the model."""
+
+    drive: Any = Absent()
+    social: Any = Absent()  # between persons
+    vision: Any = Absent()
+    normal: Any = Absent()
+    sliding: Any = Absent()
+    wall_social: Any = Absent()
+    wall_normal: Any = Absent()
+    wall_sliding: Any = Absent()
+    rotation: Any = Absent()
+
+
+INERTIA = {"sphere": Turning(0.4), "disc": Turning(0.5), "none": Absent()}
+READINGS = ("RK", "RS", "W", "W01", "R02", "WK", "WR", "B")
+
+
+def lin_dem(
+    reading: str = "RK",
+    A: float = 300.0,  # N
+    B: float = 0.05,  # m
+    phi: float = 0.3,
+    E: float = 5e6,  # Pa, Young's modulus
+    poisson: float = 0.25,
+    g_n: float = 0.8,  # 1/(m s)
+    g_t: float = 0.8,  # 1/(m s)
+    mu: float = 0.5,
+    tau: float = 0.5,  # s
+    inertia: str = "sphere",
+) -> Model:
+    """The discrete element crowd model of Lin, Ma & Lo (2016), Eqs. 1-6 and Table 1.
+
+    Parameters
+    ----------
+    reading : what sliding does, which the paper leaves open; between persons, and at walls:
+        RK spring reset on slip, kinetic friction mu tanh(v_t/0.01 m/s) (the default);
+        RS spring reset, Coulomb friction; R02 spring reset, the same with mu = 0.2; WR the same both, with mu;
+        W spring kept at the Coulomb limit (LAMMPS's law) for both; W01 at walls with mu = 0.1;
+        WK LAMMPS's law, kinetic as RK; B as W, with walls that do not push socially.
+    inertia : "sphere" (0.4 m r^2), "disc" (0.5 m r^2) or "none" (nobody turns)
+
+    Raises
+    ------
+    BadInput
+        If the reading or the inertia is none of these, or a parameter is out of its range.
+    """
+    require(reading in READINGS, "reading", repr(reading), "is not known", f"choose one of {', '.join(READINGS)}")
+    require(inertia in INERTIA, "inertia", repr(inertia), "is not known", f"choose one of {', '.join(INERTIA)}")
+    require(-1.0 < poisson < 1.0, "poisson", poisson, "is outside (-1, 1)", "give Poisson's ratio of the bodies")
+    k_n = 2.0 * E / (3.0 * (1.0 + poisson) * (1.0 - poisson))
+    k_t = 2.0 * E / ((1.0 + poisson) * (2.0 - poisson))
+    kept, reset = Mindlin(k_t, g_t, mu), MindlinReset(k_t, g_t, mu)
+    kinetic, coulomb = Kinetic(mu, 0.01), Coulomb(mu, 0.001)
+    sliding, wall_sliding = {
+        "RK": (reset, kinetic),
+        "RS": (reset, coulomb),
+        "W": (kept, kept),
+        "W01": (kept, kept._replace(mu=0.1)),
+        "R02": (reset, reset._replace(mu=0.2)),
+        "WK": (kept, kinetic),
+        "WR": (reset, reset),
+        "B": (kept, kept),
+    }[reading]
+    repulsion = Exponential(A, B)
+    return checked(
+        Model(
+            drive=Relaxation(tau),
+            social=repulsion,
+            vision=Cosine(phi),
+            normal=Hertz(k_n, g_n),
+            sliding=sliding,
+            wall_social=Absent() if reading == "B" else repulsion,
+            wall_normal=Hertz(k_n, g_n),
+            wall_sliding=wall_sliding,
+            rotation=INERTIA[inertia],
+        )
+    )
+
+
+POSITIVE = {"tau", "B", "k_n", "k_t", "v_0", "shape"}  # parameters that a law divides by, or needs to exist
+
+
+def checked(model: Model) -> Model:
+    """The model with all parameters as floats (an int would compile the kernel twice).
+
+    Raises
+    ------
+    BadInput
+        If a field is no law of its kind, or a parameter is not a finite number or not in its range.
+    """
+    return Model(*(_checked(kind, law) for kind, law in zip(Model._fields, model, strict=True)))
+
+
+def _checked(kind: str, law: Any) -> Any:
+    known = laws.KINDS[kind].laws
+    names = ", ".join(sorted(p.__name__ for p in known))
+    require(type(law) in known, kind, repr(law), "is not a law of this kind", f"choose one of {names}")
+    for name, value in law._asdict().items():
+        least = "positive" if name in POSITIVE else "not negative"
+        _check_number(f"{kind} {name}", value, least)
+    return type(law)(*map(float, law))
+
+
+def _check_number(thing: str, value: Any, least: str) -> None:
+    number = isinstance(value, int | float) or getattr(value, "ndim", None) == 0
+    inside = number and (0.0 < value < float("inf") or (value == 0.0 and least != "positive"))
+    require(inside, thing, value, f"must be finite and {least}", "give a number in its range")

@@ -1,0 +1,81 @@
+"""Rooms: the papers' scenes as functions of named parameters."""
+
+import math
+
+from engine import models
+from engine.crowd import Crowd
+from engine.errors import require
+from engine.scenario import Numerics, Record, Scenario, Stopping
+from engine.scene import Exit, Scene
+
+
+def square_room(size: float, L: float, walk_on: float = 0.0) -> Scene:
+    """A square room [0, size]^2 with one exit of width L in the middle of its right wall, m."""
+    require(math.isfinite(L) and L > 0, "L", L, "is not a width above 0 m", "give the width of the exit")
+    require(math.isfinite(size) and size > L, "size", size, f"has no room for an exit of L = {L:g} m", "enlarge it")
+    low, high = (size - L) / 2, (size + L) / 2
+    walls = (
+        (0.0, 0.0, size, 0.0),
+        (0.0, 0.0, 0.0, size),
+        (0.0, size, size, size),
+        (size, 0.0, size, low),
+        (size, high, size, size),
+    )
+    return Scene(walls, (Exit((size, low), (size, high), (1.0, 0.0), walk_on),))
+
+
+def lin_room(
+    v_d: float = 1.0,
+    N: int = 200,
+    seed: int = 0,
+    L: float = 1.0,
+    A: float = 300.0,
+    B: float = 0.05,
+    phi: float = 0.3,
+    mu: float = 0.5,
+    tau: float = 0.5,
+    reading: str = "RK",
+    inertia: str = "sphere",
+    size: float = 15.0,
+    dt: float = 1e-3,
+    force_tolerance: float = 1e-3,
+    patience: float = 120.0,
+    time_limit: float = 1000.0,
+    every: float = 0.0,
+    contacts: bool = False,
+) -> Scenario:
+    """The room of Lin, Ma & Lo (2016), Fig. 3 and Table 1.
+
+    Parameters
+    ----------
+    v_d : desired speed of everybody, m/s
+    N : number of persons
+    seed : number of the run; places, radii and masses follow from it
+    L : width of the exit, m
+    A, B, phi : strength (N), range (m) and anisotropy of the social force (Eq. 2)
+    mu : friction coefficient
+    tau : reaction time, s
+    reading : what sliding does, see `models.lin_dem`
+    inertia : "sphere", "disc" or "none", see `models.lin_dem`
+    size : side of the room, m
+    dt, force_tolerance : see `Numerics`
+    patience, time_limit : see `Stopping`
+    every, contacts : see `Record`
+
+    Raises
+    ------
+    BadInput
+        If a parameter is out of its range or the crowd cannot fit.
+    """
+    return Scenario(
+        scene=square_room(size, L),
+        crowd=Crowd.uniform(N, (0.0, size, 0.0, size), radius=(0.25, 0.35), mass=(60.0, 80.0), v_d=v_d),
+        model=models.lin_dem(reading, A=A, B=B, phi=phi, mu=mu, tau=tau, inertia=inertia),
+        numerics=Numerics(dt=dt, force_tolerance=force_tolerance),
+        stopping=Stopping(patience=patience, time_limit=time_limit),
+        record=Record(every=every, contacts=contacts),
+        seed=seed,
+    )
+
+
+ROOMS = {"lin_room": lin_room}

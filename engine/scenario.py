@@ -1,0 +1,214 @@
+"""A scenario: the frozen description of one run, checked once, with a canonical text form."""
+
+import json
+import math
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from engine import crowd as crowds
+from engine import laws, models
+from engine.errors import require
+from engine.models import Model
+from engine.scene import Exit, Scene
+
+ASSUMED_OVERLAP = 0.2  # of the smallest radius: what the step must be able to follow
+
+
+def _positive(name: str, value: float, remedy: str) -> None:
+    good = isinstance(value, int | float | np.number) and math.isfinite(value) and value > 0
+    require(good, name, value, "is not finite and positive", remedy)
+
+
+@dataclass(frozen=True)
+class Numerics:
+    """How a run is computed.
+
+    Attributes
+    ----------
+    dt : time step, s
+    force_tolerance : the social force ends, without a jump, where it has fallen to this, N
+    skin : how much farther than they reach pairs are listed, m (speed only; no result depends on it)
+    """
+
+    dt: float = 1e-3
+    force_tolerance: float = 1e-3
+    skin: float = 0.12
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            _positive(field.name, getattr(self, field.name), "give a value above 0")
+
+
+@dataclass(frozen=True)
+class Stopping:
+    """When a run ends before everybody is out.
+
+    Attributes
+    ----------
+    patience : time without anybody getting out after which the exits count as blocked, s
+    time_limit : s
+    """
+
+    patience: float = 120.0
+    time_limit: float = 1000.0
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            _positive(field.name, getattr(self, field.name), "give a time above 0 s")
+
+
+@dataclass(frozen=True)
+class Record:
+    """What is sampled along a run besides the exits.
+
+    Attributes
+    ----------
+    every : sampling interval, a multiple of dt, s; 0 for no samples
+    contacts : also who touches whom, with the springs between them
+    """
+
+    every: float = 0.0
+    contacts: bool = False
+
+    def __post_init__(self) -> None:
+        good = math.isfinite(self.every) and self.every >= 0
+        require(good, "record every", self.every, "is not a time of 0 s or more", "give a sampling interval")
+        wanted = self.every > 0 or not self.contacts
+        require(wanted, "record contacts", "without `every`", "has no times to record at", "give a sampling interval")
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """One run: scene, crowd, model, numerics, stopping, record, seed.
+
+    Raises
+    ------
+    BadInput
+        If an exit is narrower than the largest person, dt is beyond what the contacts' stiffness allows,
+        the sampling interval is no multiple of dt, or any part is out of its range.
+    """
+
+    scene: Scene
+    crowd: crowds.Uniform | crowds.Given
+    model: Model
+    numerics: Numerics = Numerics()
+    stopping: Stopping = Stopping()
+    record: Record = Record()
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        whole = isinstance(self.seed, int | np.integer) and self.seed >= 0
+        require(whole, "seed", repr(self.seed), "is not a whole number of 0 or more", "number the runs 0, 1, 2 ...")
+        object.__setattr__(self, "seed", int(self.seed))
+        object.__setattr__(self, "model", models.checked(self.model))
+        _check_exits(self.scene, self.crowd.largest_radius)
+        _check_step(self)
+        _check_sampling(self.record, self.numerics)
+
+    def to_json(self) -> str:
+        """The scenario as readable JSON, from which `from_json` makes it again."""
+        return json.dumps(_plain(self), sort_keys=True)
+
+    @staticmethod
+    def from_json(text: str) -> "Scenario":
+        """The scenario that `to_json` wrote."""
+        return _built(json.loads(text))
+
+    def canonical(self) -> str:
+        """JSON with every float exact and every default filled in: equal for equal scenarios only."""
+        return json.dumps(_exact(_plain(self)), sort_keys=True, separators=(",", ":"))
+
+
+def _check_exits(scene: Scene, largest_radius: float) -> None:
+    for line in scene.exits:
+        require(
+            line.width >= 2 * largest_radius,
+            "exit width",
+            f"{line.width:g} m",
+            f"is narrower than the largest person ({2 * largest_radius:g} m)",
+            "widen the exit or reduce the radii",
+        )
+
+
+def _check_sampling(record: Record, numerics: Numerics) -> None:
+    steps = record.every / numerics.dt
+    fits = abs(steps - round(steps)) <= 1e-6 * max(steps, 1.0)
+    require(fits, "record every", f"{record.every} s", f"is no multiple of dt = {numerics.dt} s", "change one of them")
+
+
+def _check_step(scenario: Scenario) -> None:
+    limit = step_limit(scenario)
+    require(
+        scenario.numerics.dt <= limit,
+        "dt",
+        f"{scenario.numerics.dt:g} s",
+        f"is beyond the {limit:.2g} s that the stiffness of the contacts allows",
+        "reduce dt or the stiffness, or make persons heavier",
+    )
+
+
+def step_limit(scenario: Scenario) -> float:
+    """Longest stable time step, s.
+
+    2/omega of the stiffest mode of a triangular packing, omega^2 = 3 k/m of one pair, at an overlap of a
+    fifth of the smallest radius, for the stiffer of the normal and the tangential spring (which also turns
+    the bodies, and so acts on a smaller mass).
+    """
+    radius, mass = _smallest(scenario.crowd)
+    overlap, model = ASSUMED_OVERLAP * radius, scenario.model
+    turning = 1.0 + (1.0 / model.rotation.shape if laws.turns(model.rotation) else 0.0)
+    rates = [0.0]
+    for normal, sliding, r, m in (
+        (model.normal, model.sliding, radius / 2, mass / 2),
+        (model.wall_normal, model.wall_sliding, radius, mass),
+    ):
+        rates.append(laws.normal_stiffness(normal, overlap, r) / m)
+        rates.append(laws.sliding_stiffness(sliding, overlap, r) * turning / m)
+    return 2.0 / math.sqrt(3.0 * max(rates)) if max(rates) > 0 else math.inf
+
+
+def _smallest(crowd: crowds.Uniform | crowds.Given) -> tuple[float, float]:
+    return min(crowd.radius), min(crowd.mass)
+
+
+# --- Text form: dataclasses and laws as objects that name their type ------------------------------------
+
+PARTS: dict[str, Any] = {
+    part.__name__: part
+    for part in (Scenario, Scene, Exit, crowds.Uniform, crowds.Given, Model, Numerics, Stopping, Record)
+}
+
+
+def _plain(part: Any) -> Any:
+    if is_dataclass(part):
+        return {"is": type(part).__name__} | {f.name: _plain(getattr(part, f.name)) for f in fields(part)}
+    if hasattr(part, "_asdict"):
+        return {"is": type(part).__name__} | {name: _plain(value) for name, value in part._asdict().items()}
+    if isinstance(part, tuple):
+        return [_plain(value) for value in part]
+    return part.item() if isinstance(part, np.generic) else part
+
+
+def _exact(plain: Any) -> Any:
+    if isinstance(plain, dict):
+        return {name: _exact(value) for name, value in plain.items()}
+    if isinstance(plain, list):
+        return [_exact(value) for value in plain]
+    return plain.hex() if isinstance(plain, float) else plain
+
+
+def _built(plain: Any) -> Any:
+    if isinstance(plain, list):
+        return tuple(map(_built, plain))
+    if not isinstance(plain, dict):
+        return plain
+    name = plain.pop("is")
+    known: dict[str, Any] = PARTS | _laws()
+    require(name in known, "scenario part", repr(name), "is not known", "import the module that registers this law")
+    return known[name](**{field: _built(value) for field, value in plain.items()})
+
+
+def _laws() -> dict[str, type[NamedTuple]]:
+    return {p.__name__: p for kind in laws.KINDS.values() for p in kind.laws}

@@ -1,0 +1,158 @@
+"""The scene: wall segments, and exits that lead out of it."""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from engine.errors import require
+
+Point = tuple[float, float]
+Segment = tuple[float, float, float, float]  # x0, y0, x1, y1 in m
+
+STRAIGHT = 1e-9  # sine of the angle below which two wall pieces are one straight wall
+
+
+@dataclass(frozen=True)
+class Exit:
+    """A line that persons leave across.
+
+    Attributes
+    ----------
+    start, end : ends of the line, m; walls begin there
+    outward : direction that leads out, at a right angle to the line
+    walk_on : how far beyond the line the departed still walk and push, m
+    """
+
+    start: Point
+    end: Point
+    outward: Point
+    walk_on: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("start", "end", "outward"):
+            object.__setattr__(self, name, _finite(f"exit {name}", getattr(self, name), 2))
+        object.__setattr__(self, "walk_on", _finite("exit walk_on", (self.walk_on,), 1)[0])
+        require(self.walk_on >= 0, "exit walk_on", self.walk_on, "is negative", "give a distance of 0 m or more")
+        require(self.width > 0, "exit width", f"{self.width:g} m", "is not positive", "give two different ends")
+        along = np.subtract(self.end, self.start) / self.width
+        size = math.hypot(*self.outward)
+        crossed = size > 0 and abs(along @ self.outward) <= 1e-6 * size
+        require(crossed, "exit outward", self.outward, "is not at a right angle to the exit", "give its normal")
+
+    @property
+    def width(self) -> float:
+        """Length of the line, m."""
+        return math.dist(self.start, self.end)
+
+
+@dataclass(frozen=True)
+class Scene:
+    """Walls and exits.
+
+    Attributes
+    ----------
+    walls : wall segments (x0, y0, x1, y1), m. A wall in several collinear pieces acts as one wall.
+    exits : the exits; none makes a closed box
+
+    Raises
+    ------
+    BadInput
+        If a wall is not made of four finite numbers, or has no length.
+    """
+
+    walls: tuple[Segment, ...] = ()
+    exits: tuple[Exit, ...] = ()
+
+    def __post_init__(self) -> None:
+        walls = tuple(_finite("wall", wall, 4) for wall in self.walls)
+        for wall in walls:
+            require(math.dist(wall[:2], wall[2:]) > 0, "wall", wall, "has no length", "give two different ends")
+        object.__setattr__(self, "walls", walls)
+        object.__setattr__(self, "exits", tuple(self.exits))
+
+    @classmethod
+    def box(cls, width: float, height: float) -> "Scene":
+        """A closed box [0, width] x [0, height], m."""
+        return cls(((0, 0, width, 0), (width, 0, width, height), (width, height, 0, height), (0, height, 0, 0)))
+
+
+def _finite(thing: str, numbers: object, count: int) -> tuple[float, ...]:
+    try:
+        values = tuple(float(number) for number in numbers)  # type: ignore[attr-defined]  # that is what is tested
+    except (TypeError, ValueError):
+        values = ()
+    good = len(values) == count and all(map(math.isfinite, values))
+    require(good, thing, numbers, f"is not {count} finite number{'s' * (count > 1)}", "give them in m")
+    return values
+
+
+class SceneArrays(NamedTuple):
+    """What the kernel sees of a scene."""
+
+    walls: np.ndarray  # (walls, 5): x0, y0, unit vector along, length; m
+    joints: np.ndarray  # (walls, 2, n): walls that share the start, the end; -1 none
+    exits: np.ndarray  # (exits, 8): x0, y0, unit vector along, length, outward normal, walk_on; m
+
+
+def as_arrays(scene: Scene) -> SceneArrays:
+    """The scene for the kernel, collinear wall pieces joined."""
+    segments = _joined(list(scene.walls))
+    walls = np.array([(x0, y0, *_along(x0, y0, x1, y1)) for x0, y0, x1, y1 in segments]).reshape(-1, 5)
+    exits = np.array([_exit_row(e) for e in scene.exits]).reshape(-1, 8)
+    return SceneArrays(walls, _joints(segments), exits)
+
+
+def _along(x0: float, y0: float, x1: float, y1: float) -> tuple[float, float, float]:
+    length = math.hypot(x1 - x0, y1 - y0)
+    return (x1 - x0) / length, (y1 - y0) / length, length
+
+
+def _exit_row(e: Exit) -> tuple[float, ...]:
+    size = math.hypot(*e.outward)
+    return (*e.start, *_along(*e.start, *e.end), e.outward[0] / size, e.outward[1] / size, e.walk_on)
+
+
+def _joined(segments: list[Segment]) -> list[Segment]:
+    """Join pieces that touch or overlap on one line, as long as there are any."""
+    for a in range(len(segments)):
+        for b in range(a + 1, len(segments)):
+            union = _union(segments[a], segments[b])
+            if union:
+                rest = [s for k, s in enumerate(segments) if k not in (a, b)]
+                return _joined([*rest[:a], union, *rest[a:]])
+    return segments
+
+
+def _union(first: Segment, second: Segment) -> Segment | None:
+    """The one segment that two collinear, touching segments make; None if they are not such."""
+    x0, y0 = first[:2]
+    ux, uy, length = _along(*first)
+    ends = [(x - x0, y - y0) for x, y in (second[:2], second[2:])]
+    aside = max(abs(ux * dy - uy * dx) for dx, dy in ends)
+    s, e = sorted(ux * dx + uy * dy for dx, dy in ends)
+    slack = STRAIGHT * max(length, e - s)
+    if aside > slack or s > length + slack or e < -slack:
+        return None
+    s, e = min(s, 0.0), max(e, length)
+    return x0 + s * ux, y0 + s * uy, x0 + e * ux, y0 + e * uy
+
+
+def _joints(segments: list[Segment]) -> np.ndarray:
+    """For each end of each wall the other walls that have an end there."""
+    ends = [((x0, y0), (x1, y1)) for x0, y0, x1, y1 in segments]
+    found = [
+        [[k for k, other in enumerate(ends) if k != w and _meets(point, other)] for point in ends[w]]
+        for w in range(len(ends))
+    ]
+    most = max((len(shared) for wall in found for shared in wall), default=0)
+    joints = np.full((len(ends), 2, max(most, 1)), -1, np.int64)
+    for w, wall in enumerate(found):
+        for end, shared in enumerate(wall):
+            joints[w, end, : len(shared)] = shared
+    return joints
+
+
+def _meets(point: Point, ends: tuple[Point, Point]) -> bool:
+    return any(math.dist(point, end) < 1e-9 for end in ends)

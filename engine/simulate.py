@@ -1,0 +1,243 @@
+"""Scenario -> arrays -> kernel -> Run."""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from engine import integrate, laws
+from engine.crowd import Start
+from engine.integrate import Clock, Exits, Rules, advance
+from engine.neighbours import Near, People, nobody_near
+from engine.scenario import Scenario
+from engine.scene import SceneArrays, as_arrays
+
+OUTCOMES = ("missing", "all_out", "blocked", "frozen", "time_limit", "unstable")  # their numbers are the kernel's
+PATIENCE_STEPS = 20_000  # at most between two looks at the world outside the kernel (Ctrl-C)
+
+
+@dataclass(frozen=True)
+class Samples:
+    """The state at M sampled times; persons who have left are nan.
+
+    Attributes
+    ----------
+    time : (M,) s
+    x, y : (M, N) m
+    vx, vy : (M, N) m/s
+    spin : (M, N) rad/s
+    row_size : (M,) number of contacts at each time; contacts are listed one time after the other:
+    contact_i, contact_j : (contacts,) persons in touch; contact_j = -1 - w for wall w
+    contact_slip : (contacts,) m, tangential spring
+    """
+
+    time: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    vx: np.ndarray
+    vy: np.ndarray
+    spin: np.ndarray
+    row_size: np.ndarray
+    contact_i: np.ndarray
+    contact_j: np.ndarray
+    contact_slip: np.ndarray
+
+
+@dataclass(frozen=True)
+class Run:
+    """What one run gave.
+
+    Attributes
+    ----------
+    scenario : what was run
+    outcome : "all_out", "blocked", "frozen", "time_limit" or "unstable"
+    end_time : s
+    exit_time, exit_person, exit_x, exit_y, exit_door : (N_out,) who left when (s) and where (m), in order
+    start : the crowd at the start
+    samples : the state along the run, if it was recorded
+    max_overlap, max_speed : m, m/s
+    steps, rebuilds : of the integration, of the neighbour lists
+    culprit : the person whose place is no number any more, if unstable; else -1
+    """
+
+    scenario: Scenario
+    outcome: str
+    end_time: float
+    exit_time: np.ndarray
+    exit_person: np.ndarray
+    exit_x: np.ndarray
+    exit_y: np.ndarray
+    exit_door: np.ndarray
+    start: Start
+    samples: Samples | None
+    max_overlap: float
+    max_speed: float
+    steps: int
+    rebuilds: int
+    culprit: int
+
+    @property
+    def N(self) -> int:
+        """Persons at the start."""
+        return self.start.x.size
+
+    @property
+    def N_out(self) -> int:
+        """Persons who got out."""
+        return self.exit_time.size
+
+    def __str__(self) -> str:
+        """The outcome in a sentence."""
+        return {
+            "all_out": f"all {self.N} persons were out after {self.end_time:.1f} s",
+            "blocked": f"blocked: nobody got out during the last {self.scenario.stopping.patience:g} s of "
+            f"{self.end_time:.1f} s; {self.N_out} of {self.N} persons were out",
+            "frozen": f"frozen: at rest for good after {self.end_time:.1f} s, {self.N_out} of {self.N} out",
+            "time_limit": f"stopped at the time limit of {self.end_time:.1f} s, {self.N_out} of {self.N} out",
+            "unstable": f"unstable: the place of person {self.culprit} was no number after {self.end_time:.4f} s",
+        }[self.outcome]
+
+
+def simulate(scenario: Scenario) -> Run:
+    """Run a scenario to its end.
+
+    Returns
+    -------
+    Run
+        Not finishing is a result: see its `outcome`.
+
+    Raises
+    ------
+    BadInput
+        If the crowd cannot be placed.
+    """
+    scene = as_arrays(scenario.scene)
+    start = scenario.crowd.draw(scenario.seed, scene.walls)
+    people, model, rules = _people(scenario, start), _with_cut(scenario), _rules(scenario)
+    exits = _no_exits(scenario.crowd.N)
+    clock = Clock(-1, scenario.crowd.N, 0, 0, integrate.RUNNING, 0, 0.0, 0.0, -1)
+    near, recorder = nobody_near(), _Recorder(scenario)
+    for until in recorder.looks(rules):
+        near, clock = advance(model, scene, rules, people, near, exits, clock, until)
+        recorder.look(scene, people, near, clock)
+        if clock.outcome != integrate.RUNNING:
+            break
+    return _run(scenario, start, exits, clock, recorder.samples())
+
+
+def _people(scenario: Scenario, start: Start) -> People:
+    N = start.x.size
+    rotation = scenario.model.rotation
+    inertia = rotation.shape * start.mass * start.radius**2 if laws.turns(rotation) else np.full(N, math.inf)
+    state: dict[str, np.ndarray] = {name: np.zeros(N) for name in People._fields}
+    state |= {name: value.copy() for name, value in start._asdict().items()}
+    state |= {"who": np.arange(N), "out": np.zeros(N, np.uint8), "inertia": inertia}
+    return People(**state | {"listed_x": np.full(N, np.nan), "listed_y": np.full(N, np.nan)})  # nowhere: not listed
+
+
+def _with_cut(scenario: Scenario) -> Any:
+    tolerance, model = scenario.numerics.force_tolerance, scenario.model
+    return model._replace(
+        social=laws.cut_at(model.social, tolerance), wall_social=laws.cut_at(model.wall_social, tolerance)
+    )
+
+
+def _rules(scenario: Scenario) -> Rules:
+    dt, model = scenario.numerics.dt, _with_cut(scenario)
+    return Rules(
+        dt=float(dt),
+        gap=laws.reach(model.social),
+        wall_gap=laws.reach(model.wall_social),
+        skin=float(scenario.numerics.skin),
+        last_step=math.ceil(scenario.stopping.time_limit / dt - 1e-9),
+        patience=math.ceil(scenario.stopping.patience / dt - 1e-9),
+    )
+
+
+def _no_exits(N: int) -> Exits:
+    return Exits(np.full(N, np.nan), np.full(N, -1), np.full(N, np.nan), np.full(N, np.nan), np.full(N, -1))
+
+
+class _Recorder:
+    """Samples a run at the times that were asked for."""
+
+    def __init__(self, scenario: Scenario) -> None:
+        self.record, self.dt, self.N = scenario.record, scenario.numerics.dt, scenario.crowd.N
+        self.stride = round(self.record.every / self.dt)
+        self.times: list[float] = []
+        self.states: list[np.ndarray] = []
+        self.contacts: list[tuple[np.ndarray, ...]] = []
+
+    def looks(self, rules: Rules) -> Any:
+        """Steps at which the kernel returns: every sample, and often enough to be interrupted."""
+        if self.stride:
+            yield 0
+        stride = self.stride or PATIENCE_STEPS
+        for step in range(stride, rules.last_step + stride, stride):
+            yield from range(step - stride + PATIENCE_STEPS, step, PATIENCE_STEPS)
+            yield step
+
+    def look(self, scene: SceneArrays, people: People, near: Near, clock: Clock) -> None:
+        """Take a sample if one is due."""
+        if not self.stride or clock.step % self.stride:
+            return
+        n = clock.inside
+        state = np.full((5, self.N), np.nan)
+        for row, values in enumerate((people.x, people.y, people.vx, people.vy, people.spin)):
+            state[row, people.who[:n]] = values[:n]
+        self.times.append(clock.step * self.dt)
+        self.states.append(state)
+        if self.record.contacts:
+            self.contacts.append(_contacts(scene, people, near))
+
+    def samples(self) -> Samples | None:
+        """All samples, one array for each quantity."""
+        if not self.stride:
+            return None
+        x, y, vx, vy, spin = np.stack(self.states, axis=1)
+        row_size = np.array([len(found[0]) for found in self.contacts], np.int64)
+        if self.contacts:
+            i, j, slip = (np.concatenate(parts) for parts in zip(*self.contacts, strict=True))
+        else:
+            i, j, slip = np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0)
+        return Samples(np.array(self.times), x, y, vx, vy, spin, row_size, i, j, slip)
+
+
+def _contacts(scene: SceneArrays, people: People, near: Near) -> tuple[np.ndarray, ...]:
+    """Who touches whom now: persons i < j, and person i with wall w as j = -1 - w."""
+    i, j = near.i.astype(np.int64), near.j.astype(np.int64)
+    touch = np.hypot(people.x[i] - people.x[j], people.y[i] - people.y[j]) < people.radius[i] + people.radius[j]
+    wall_i, wall = near.wall_i.astype(np.int64), near.wall.astype(np.int64)
+    x0, y0, ux, uy, length = scene.walls[wall].T
+    dx, dy = people.x[wall_i] - x0, people.y[wall_i] - y0
+    along = np.clip(dx * ux + dy * uy, 0.0, length)
+    at_wall = np.hypot(dx - along * ux, dy - along * uy) < people.radius[wall_i]
+    return (
+        np.concatenate([people.who[i[touch]], people.who[wall_i[at_wall]]]),
+        np.concatenate([people.who[j[touch]], -1 - wall[at_wall]]),
+        np.concatenate([near.slip[touch], near.wall_slip[at_wall]]),
+    )
+
+
+def _run(scenario: Scenario, start: Start, exits: Exits, clock: Clock, samples: Samples | None) -> Run:
+    order = np.argsort(exits.time[: clock.N_out], kind="stable")
+    time, person, x, y, door = (values[order] for values in exits)
+    outcome = OUTCOMES[clock.outcome]
+    return Run(
+        scenario=scenario,
+        outcome=outcome,
+        end_time=float(time[-1]) if outcome == "all_out" else clock.step * scenario.numerics.dt,
+        exit_time=time,
+        exit_person=person,
+        exit_x=x,
+        exit_y=y,
+        exit_door=door,
+        start=start,
+        samples=samples,
+        max_overlap=clock.max_overlap,
+        max_speed=clock.max_speed,
+        steps=clock.step,
+        rebuilds=clock.rebuilds,
+        culprit=clock.culprit,
+    )
