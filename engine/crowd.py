@@ -185,7 +185,7 @@ def _require_room(holds: bool, N: int, share: float, area: tuple[float, float, f
         "N",
         N,
         f"persons do not fit at random into {where} without overlap (they cover {share:.0%} of it)",
-        "reduce N or the radii, or enlarge the room (up to about 50 % can be placed)",
+        "reduce N or the radii, or enlarge the room (up to about 45 % can be placed)",
     )
 
 

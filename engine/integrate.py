@@ -9,6 +9,7 @@ from engine.forces import BLOCK, ROWS, forces
 from engine.laws import turns
 from engine.neighbours import rebuilt
 
+FAR = 1e6  # m; whoever is farther from the origin has been thrown out of the world
 RUNNING, ALL_OUT, BLOCKED, FROZEN, TIME_LIMIT, UNSTABLE = range(6)
 
 
@@ -34,7 +35,7 @@ class Clock(NamedTuple):
     rebuilds: int
     max_overlap: float  # m
     max_speed: float  # m/s
-    culprit: int  # person with a number that is not finite; -1: none
+    culprit: int  # person who is nowhere; -1: none
 
 
 class Exits(NamedTuple):
@@ -69,7 +70,7 @@ def advance(model, scene, rules, people, near, exits, clock, until):
             N_out += crossed
             last_out = step
         if gone or _left_their_skin(people, n, rules.skin):
-            culprit = _first_not_finite(people, n)
+            culprit = _first_nowhere(people, n)
             if culprit >= 0:
                 outcome = UNSTABLE
                 break
@@ -166,9 +167,10 @@ def _left_their_skin(people, n, skin):
 
 
 @njit(cache=True)
-def _first_not_finite(people, n):
+def _first_nowhere(people, n):
+    """Look for somebody whose place is no number, or far outside any scene; -1: nobody."""
     for i in range(n):
-        if not np.isfinite(people.x[i] + people.y[i]):
+        if not abs(people.x[i]) + abs(people.y[i]) < FAR:  # true for nan
             return people.who[i]
     return -1
 

@@ -81,7 +81,7 @@ def _pairs(people, n, gap):
     for i in range(n):
         x0, x1, y0, y1 = min(x0, x[i]), max(x1, x[i]), min(y0, y[i]), max(y1, y[i])
         largest = max(largest, radius[i])
-    size = 2.0 * largest + gap
+    size = max(2.0 * largest + gap, math.sqrt((x1 - x0) * (y1 - y0) / (4.0 * n + 16.0)))  # no more cells than useful
     columns, rows = int((x1 - x0) / size) + 1, int((y1 - y0) / size) + 1
     first, following = np.full(columns * rows, -1), np.empty(n, np.int64)  # of the persons in a cell
     for i in range(n - 1, -1, -1):

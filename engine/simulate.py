@@ -58,7 +58,7 @@ class Run:
     samples : the state along the run, if it was recorded
     max_overlap, max_speed : m, m/s
     steps, rebuilds : of the integration, of the neighbour lists
-    culprit : the person whose place is no number any more, if unstable; else -1
+    culprit : the person whose place is no number any more, or beyond 1000 km, if unstable; else -1
     """
 
     scenario: Scenario
@@ -95,7 +95,7 @@ class Run:
             f"{self.end_time:.1f} s; {self.N_out} of {self.N} persons were out",
             "frozen": f"frozen: at rest for good after {self.end_time:.1f} s, {self.N_out} of {self.N} out",
             "time_limit": f"stopped at the time limit of {self.end_time:.1f} s, {self.N_out} of {self.N} out",
-            "unstable": f"unstable: the place of person {self.culprit} was no number after {self.end_time:.4f} s",
+            "unstable": f"unstable: person {self.culprit} was thrown out of the world after {self.end_time:.4f} s",
         }[self.outcome]
 
 

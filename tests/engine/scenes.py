@@ -62,3 +62,24 @@ def _touch(run, k, i, j, walls):
     x0, y0, x1, y1 = walls[-1 - j]
     distance = abs((x1 - x0) * (y[i] - y0) - (y1 - y0) * (x[i] - x0)) / np.hypot(x1 - x0, y1 - y0)
     return r[i] - distance, r[i]
+
+
+def stiffening(run):
+    """Work that pressing does on tangential springs up to every sample, J (M,): d(alpha) k_t slip^2 / 2.
+
+    Mindlin's spring k_t sqrt(R overlap) stiffens while it is held, and takes up energy that no force pays for;
+    it gives it back when the two part.
+    """
+    k_t, walls = run.scenario.model.sliding.k_t, run.scenario.scene.walls
+    work, before, first = np.zeros(run.samples.time.size), {}, 0
+    for k, size in enumerate(run.samples.row_size):
+        now = {}
+        for c in range(first, first + size):
+            i, j = run.samples.contact_i[c], run.samples.contact_j[c]
+            overlap, radius = _touch(run, k, i, j, walls)
+            now[i, j] = np.sqrt(radius * overlap), run.samples.contact_slip[c] ** 2
+        for pair in now.keys() & before.keys():
+            (alpha, slip), (alpha_0, slip_0) = now[pair], before[pair]
+            work[k] += 0.25 * k_t * (alpha - alpha_0) * (slip + slip_0)
+        before, first = now, first + size
+    return np.cumsum(work)

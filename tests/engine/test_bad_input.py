@@ -1,0 +1,92 @@
+"""Bad input is one line: what, value, requirement, remedy."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from engine import BadInput, Crowd, Exit, Model, Numerics, Record, Scenario, Scene, laws, models, rooms
+
+NAN, INF = math.nan, math.inf
+AREA = (0, 15, 0, 15)
+PERSON = {"x": [1.0], "y": [1.0], "vx": 0.0, "vy": 0.0, "spin": 0.0, "radius": 0.3, "mass": 70.0, "v_d": 1.0}
+
+CASES = {
+    "v_d nan": (lambda: rooms.lin_room(v_d=NAN), "v_d nan"),
+    "v_d negative": (lambda: rooms.lin_room(v_d=-1.0), "v_d -1.0"),
+    "N negative": (lambda: rooms.lin_room(N=-3), "N -3"),
+    "N no whole number": (lambda: rooms.lin_room(N=2.5), "N 2.5"),
+    "N zero": (lambda: rooms.lin_room(N=0), "N 0"),
+    "seed negative": (lambda: rooms.lin_room(seed=-1), "seed -1"),
+    "seed no whole number": (lambda: rooms.lin_room(seed=0.5), "seed 0.5"),
+    "tau zero": (lambda: rooms.lin_room(tau=0.0), "drive tau 0"),
+    "tau nan": (lambda: rooms.lin_room(tau=NAN), "drive tau nan"),
+    "A negative": (lambda: rooms.lin_room(A=-300.0), "social A -300"),
+    "B zero": (lambda: rooms.lin_room(B=0.0), "social B 0"),
+    "mu text": (lambda: rooms.lin_room(mu="high"), "sliding mu high"),
+    "reading unknown": (lambda: rooms.lin_room(reading="XY"), "reading 'XY'"),
+    "inertia unknown": (lambda: rooms.lin_room(inertia="cube"), "inertia 'cube'"),
+    "exit width zero": (lambda: rooms.lin_room(L=0.0), "L 0.0"),
+    "exit width nan": (lambda: rooms.lin_room(L=NAN), "L nan"),
+    "exit too narrow": (lambda: rooms.lin_room(L=0.5), "exit width 0.5 m is narrower than the largest person (0.7 m)"),
+    "exit wider than the room": (lambda: rooms.lin_room(L=15.0), "size 15.0"),
+    "dt too long": (lambda: rooms.lin_room(dt=0.02), "dt 0.02 s is beyond the"),
+    "dt nan": (lambda: rooms.lin_room(dt=NAN), "dt nan"),
+    "dt negative": (lambda: rooms.lin_room(dt=-1e-3), "dt -0.001"),
+    "force tolerance zero": (lambda: Numerics(force_tolerance=0.0), "force_tolerance 0"),
+    "patience infinite": (lambda: rooms.lin_room(patience=INF), "patience inf"),
+    "sampling negative": (lambda: rooms.lin_room(every=-1.0), "record every -1"),
+    "sampling between steps": (lambda: rooms.lin_room(every=1.5e-3), "record every 0.0015 s"),
+    "contacts without times": (lambda: Record(contacts=True), "record contacts"),
+    "radius nan": (lambda: Crowd.uniform(10, AREA, radius=NAN), "radius nan"),
+    "radius zero": (lambda: Crowd.uniform(10, AREA, radius=(0.0, 0.3)), "radius (0.0, 0.3)"),
+    "radius backwards": (lambda: Crowd.uniform(10, AREA, radius=(0.3, 0.2)), "radius (0.3, 0.2)"),
+    "mass negative": (lambda: Crowd.uniform(10, AREA, mass=-70.0), "mass -70.0"),
+    "mass of three": (lambda: Crowd.uniform(10, AREA, mass=(1, 2, 3)), "mass (1, 2, 3)"),
+    "area empty": (lambda: Crowd.uniform(10, (0, 0, 0, 15)), "area (0, 0, 0, 15)"),
+    "given radius negative": (lambda: Crowd.given(**PERSON | {"radius": -0.3}), "radius -0.3"),
+    "given place nan": (lambda: Crowd.given(**PERSON | {"x": [NAN]}), "x nan"),
+    "given lengths differ": (lambda: Crowd.given(**PERSON | {"mass": [70.0, 80.0]}), "mass of shape (2,)"),
+    "wall without length": (lambda: Scene(((1, 1, 1, 1),)), "wall (1.0, 1.0, 1.0, 1.0)"),
+    "wall nan": (lambda: Scene(((1, 1, 1, NAN),)), "wall (1, 1, 1, nan)"),
+    "exit outward along": (lambda: Exit((0, 0), (0, 1), (0, 1)), "exit outward"),
+    "exit without width": (lambda: Exit((0, 0), (0, 0), (0, 1)), "exit width 0 m"),
+    "a law of the wrong kind": (lambda: models.checked(Model(drive=laws.Hertz(1e6, 0))), "drive Hertz"),
+    "not a law": (lambda: models.checked(Model(vision=0.3)), "vision 0.3"),
+}
+
+
+@pytest.mark.parametrize(("make", "begins"), CASES.values(), ids=CASES)
+def test_bad_input_is_one_line_that_names_it(make, begins):
+    with pytest.raises(BadInput) as error:
+        make()
+    message = str(error.value)
+    assert message.startswith(begins)
+    assert ": " in message, "no remedy"
+    assert "\n" not in message
+
+
+def test_the_longest_allowed_step_is_named():
+    limit = float(_message(lambda: rooms.lin_room(dt=0.1)).split("beyond the ")[1].split(" s")[0])
+    assert 2e-3 < limit < 2e-2
+    rooms.lin_room(dt=limit * 0.99)
+
+
+def test_a_stiffer_body_forbids_the_step_that_a_softer_one_allows():
+    scenario = rooms.lin_room(dt=4e-3)
+    with pytest.raises(BadInput, match=r"^dt 0.004 s"):
+        replace(scenario, model=models.lin_dem(E=5e8))
+
+
+def _message(make):
+    with pytest.raises(BadInput) as error:
+        make()
+    return str(error.value)
+
+
+def test_a_scenario_survives_its_text_form():
+    scenario = rooms.lin_room(v_d=1.3, N=40, reading="W01", inertia="none", every=0.5, contacts=True)
+    again = Scenario.from_json(scenario.to_json())
+    assert again == scenario
+    assert again.canonical() == scenario.canonical()
+    assert rooms.lin_room(v_d=1.3 + 1e-15, N=40).canonical() != rooms.lin_room(v_d=1.3, N=40).canonical()

@@ -1,0 +1,126 @@
+"""The integrator: its order, and motion known in closed form."""
+
+import numpy as np
+import pytest
+
+from engine import Crowd, Exit, Model, Numerics, Record, Scenario, Scene, Stopping, laws, models, rooms, simulate
+
+
+def slope(scenario_at, steps, fine):
+    """Order of convergence of the places at the end, from a fit over the steps."""
+    best = simulate(scenario_at(fine)).samples
+    errors = []
+    for dt in steps:
+        end = simulate(scenario_at(dt)).samples
+        errors.append(np.sqrt(np.mean((end.x[-1] - best.x[-1]) ** 2 + (end.y[-1] - best.y[-1]) ** 2)))
+    return np.polyfit(np.log(steps), np.log(errors), 1)[0]
+
+
+def six_persons(model, dt, t_end=1.0):
+    x, y = np.array([0, 0.7, 0.1, 0.8, 0.4, -0.5]), np.array([0, 0.1, 0.7, 0.8, 1.35, 0.4])
+    crowd = Crowd.given(x, y, vx=[0.5, -0.5, 0.3, -0.4, 0.0, 0.6], vy=0.0, spin=0.0, radius=0.3, mass=70.0, v_d=1.0)
+    exits = (Exit((9.0, 0.0), (9.0, 2.0), (1.0, 0.0)),)
+    numerics = Numerics(dt=dt, force_tolerance=1e-13)
+    return Scenario(Scene((), exits), crowd, model, numerics, Stopping(time_limit=t_end), Record(every=t_end))
+
+
+STEPS = [2e-3, 1e-3, 5e-4, 2e-4]
+CONSERVATIVE = Model(social=laws.Exponential(300.0, 0.05), vision=laws.Cosine(0.3), normal=laws.Hertz(3.5e6, 0.0))
+
+
+@pytest.mark.parametrize("normal", [laws.Absent(), laws.Hertz(3.5e6, 0.0)])
+def test_velocity_verlet_is_second_order_where_forces_do_not_depend_on_velocity(normal):
+    model = CONSERVATIVE._replace(normal=normal)
+    assert 1.8 < slope(lambda dt: six_persons(model, dt), STEPS, 1e-5) < 2.2
+
+
+def test_velocity_verlet_as_printed_is_first_order_with_the_drive():
+    """The forces are taken at the half-step velocity (sub-step c of the paper)."""
+    driven = CONSERVATIVE._replace(drive=laws.Relaxation(0.5))
+    assert 0.85 < slope(lambda dt: six_persons(driven, dt), STEPS, 1e-5) < 1.15
+
+
+def alone(v_d, length, dt=1e-3, **changes):
+    """One person at the beginning of an empty corridor with an exit at its end."""
+    walls = ((0.0, 0.0, length, 0.0), (0.0, 2.0, length, 2.0), (0.0, 0.0, 0.0, 2.0))
+    scene = Scene(walls, (Exit((length, 0.0), (length, 2.0), (1.0, 0.0)),))
+    crowd = Crowd.given([1.0], [1.0], **{"vx": 0.0} | changes, vy=0.0, spin=0.0, radius=0.3, mass=70.0, v_d=v_d)
+    return Scenario(scene, crowd, models.lin_dem(), Numerics(dt=dt), record=Record(every=100 * dt))
+
+
+def test_a_free_person_accelerates_exponentially():
+    """v(t) = v_d (1 - exp(-t/tau)), tau = 0.5 s."""
+    samples = simulate(alone(1.4, 10.0, dt=1e-4)).samples
+    walking = samples.time < 3.0
+    exact = 1.4 * (1.0 - np.exp(-samples.time[walking] / 0.5))
+    assert samples.vx[walking, 0] == pytest.approx(exact, abs=1e-4)
+
+
+def test_a_corridor_of_40_m_takes_as_long_as_rimea_says():
+    """RiMEA test 1: 40 m at 1.33 m/s in 26 to 34 s."""
+    assert 26.0 < simulate(alone(1.33, 41.0)).end_time < 34.0
+
+
+@pytest.mark.parametrize("dt", [1e-3, 7e-4])
+def test_crossing_times_are_interpolated_within_the_step(dt):
+    """At a constant 1 m/s the line 2.0004 m ahead is crossed after 2.0004 s whatever the step."""
+    run = simulate(alone(1.0, 3.0004, dt=dt, vx=1.0))
+    assert run.exit_time == pytest.approx([2.0004], abs=1e-9)
+    assert run.exit_y == pytest.approx([1.0], abs=1e-9)
+
+
+def test_everybody_leaves_in_order_and_is_counted_once():
+    run = simulate(rooms.lin_room(v_d=1.5, N=40, seed=2))
+    assert run.outcome == "all_out"
+    assert run.end_time == run.exit_time[-1]
+    assert sorted(run.exit_person) == list(range(40))
+    assert (np.diff(run.exit_time) >= 0).all()
+    assert ((run.exit_y > 7.0) & (run.exit_y < 8.0)).all()
+    assert run.exit_x == pytest.approx(15.0, abs=1e-12)
+
+
+def test_nobody_out_for_the_patience_is_blocked():
+    run = simulate(rooms.lin_room(v_d=0.0, N=5, patience=3.0))
+    assert (run.outcome, run.end_time, run.N_out) == ("blocked", 3.0, 0)
+
+
+def test_the_time_limit_ends_a_run_that_goes_on():
+    run = simulate(rooms.lin_room(N=50, time_limit=8.0))
+    assert (run.outcome, run.end_time) == ("time_limit", 8.0)
+    assert 0 < run.N_out < 50
+
+
+def test_a_closed_box_is_run_to_its_time_limit():
+    crowd = Crowd.given([1.0], [1.0], 1.0, 0.0, 0.0, 0.3, 70.0, 0.0)
+    scenario = Scenario(Scene.box(3.0, 3.0), crowd, Model(wall_normal=laws.Hertz(1e6, 0.0)))
+    run = simulate(Scenario(scenario.scene, crowd, scenario.model, stopping=Stopping(patience=1.0, time_limit=5.0)))
+    assert (run.outcome, run.end_time) == ("time_limit", 5.0)
+
+
+def test_two_exits_are_used_by_those_who_are_near():
+    room = rooms.square_room(6.0, 1.0)
+    west = Exit((0.0, 2.5), (0.0, 3.5), (-1.0, 0.0))
+    walls = (*tuple(w for w in room.walls if w != (0.0, 0.0, 0.0, 6.0)), (0, 0, 0, 2.5), (0, 3.5, 0, 6.0))
+    crowd = Crowd.given([1.0, 5.0], [3.0, 3.0], 0.0, 0.0, 0.0, 0.3, 70.0, 1.0)
+    run = simulate(Scenario(Scene(walls, (*room.exits, west)), crowd, models.lin_dem()))
+    assert dict(zip(run.exit_person.tolist(), run.exit_door.tolist(), strict=True)) == {0: 1, 1: 0}
+
+
+def test_the_departed_go_on_pushing_as_far_as_the_exit_lets_them_walk():
+    """Counted at the line in both cases; who follows close behind is slowed by who walks on."""
+    times = []
+    for walk_on in (0.0, 1.0):
+        scene = rooms.square_room(6.0, 1.0, walk_on)
+        crowd = Crowd.given([5.5, 4.85], [3.0, 3.0], 0.0, 0.0, 0.0, 0.3, 70.0, [0.5, 1.5])
+        run = simulate(Scenario(scene, crowd, models.lin_dem()))
+        assert run.outcome == "all_out"
+        times.append(run.exit_time)
+    assert times[0][0] == times[1][0]
+    assert times[1][1] > times[0][1] + 0.01
+
+
+def test_a_run_that_blows_up_ends_as_unstable_and_names_the_person():
+    crowd = Crowd.given([1.0, 2.0], [1.0, 1.0], [0.0, 1e200], 0.0, 0.0, 0.3, 70.0, 0.0)
+    run = simulate(Scenario(Scene(), crowd, Model(normal=laws.Hertz(1e6, 0.0))))
+    assert (run.outcome, run.culprit) == ("unstable", 1)
+    assert "person 1" in str(run)
