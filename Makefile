@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
 
-.PHONY: help setup test lint clean
+.PHONY: help setup test lint constraints clean
 .DEFAULT_GOAL := help
 
 help:  ## this list
@@ -13,11 +13,18 @@ help:  ## this list
 
 setup: $(READY)  ## the environment in .venv, from pinned versions
 
+# A bare Debian has Python without the means to make a virtual environment.
+VENV_PACKAGE := { \
+  if [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null; then \
+    echo "installing Debian's python3-venv ..."; \
+    apt-get update -qq && DEBIAN_FRONTEND=noninteractive apt-get install -qq -y python3-venv >/dev/null; \
+  else echo "Python cannot make a virtual environment: apt-get install python3-venv"; exit 2; fi; }
+
 $(READY): pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
-	  { echo "$(PYTHON) is older than Python 3.11: install one and say make PYTHON=python3.11"; exit 2; }
-	@test -x $(BIN)/pip || $(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); \
-	  echo "Python cannot make a virtual environment: on Debian, apt-get install python3-venv"; exit 2; }
+	  { echo "$(PYTHON) is older than Python 3.11: say make PYTHON=python3.11"; exit 2; }
+	@$(PYTHON) -c 'import ensurepip' 2>/dev/null || $(VENV_PACKAGE)
+	@test -x $(BIN)/pip || $(PYTHON) -m venv $(VENV)
 	@echo "setting up $(VENV) ..."
 	@$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
 	@touch $@
@@ -33,6 +40,9 @@ lint: $(READY)  ## style, layers, types
 	@$(BIN)/ruff format --check .
 	@$(BIN)/lint-imports --no-cache
 	@$(BIN)/mypy
+
+constraints: $(READY)  ## pin what is installed now
+	@$(BIN)/pip freeze --exclude-editable > constraints.txt
 
 clean:  ## remove the environment (results stay)
 	rm -rf $(VENV)

@@ -16,9 +16,13 @@ from engine.scene import Exit, Scene
 ASSUMED_OVERLAP = 0.2  # of the smallest radius: what the step must be able to follow
 
 
-def _positive(name: str, value: float, remedy: str) -> None:
-    good = isinstance(value, int | float | np.number) and math.isfinite(value) and value > 0
-    require(good, name, value, "is not finite and positive", remedy)
+def _make_positive(part: Any, remedy: str) -> None:
+    """Turn all fields of a frozen dataclass into floats above 0, so that 120 and 120.0 are one scenario."""
+    for field in fields(part):
+        value = getattr(part, field.name)
+        good = isinstance(value, int | float | np.number) and math.isfinite(value) and value > 0
+        require(good, field.name, value, "is not finite and positive", remedy)
+        object.__setattr__(part, field.name, float(value))
 
 
 @dataclass(frozen=True)
@@ -37,8 +41,7 @@ class Numerics:
     skin: float = 0.12
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            _positive(field.name, getattr(self, field.name), "give a value above 0")
+        _make_positive(self, "give a value above 0")
 
 
 @dataclass(frozen=True)
@@ -55,8 +58,7 @@ class Stopping:
     time_limit: float = 1000.0
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            _positive(field.name, getattr(self, field.name), "give a time above 0 s")
+        _make_positive(self, "give a time above 0 s")
 
 
 @dataclass(frozen=True)
@@ -73,8 +75,9 @@ class Record:
     contacts: bool = False
 
     def __post_init__(self) -> None:
-        good = math.isfinite(self.every) and self.every >= 0
+        good = isinstance(self.every, int | float | np.number) and math.isfinite(self.every) and self.every >= 0
         require(good, "record every", self.every, "is not a time of 0 s or more", "give a sampling interval")
+        object.__setattr__(self, "every", float(self.every))
         wanted = self.every > 0 or not self.contacts
         require(wanted, "record contacts", "without `every`", "has no times to record at", "give a sampling interval")
 
@@ -124,7 +127,7 @@ class Scenario:
 def _check_exits(scene: Scene, largest_radius: float) -> None:
     for line in scene.exits:
         require(
-            line.width >= 2 * largest_radius,
+            line.width >= 2 * largest_radius * (1 - 1e-9),
             "exit width",
             f"{line.width:g} m",
             f"is narrower than the largest person ({2 * largest_radius:g} m)",

@@ -1,0 +1,224 @@
+"""Figure 10 of Lin, Ma & Lo (2016): mean flow against desired speed, and the three states of the crowd."""
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from engine import rooms
+from studies import measures
+from studies.presentation import figures
+from studies.presentation.verdicts import Verdict, interval, table
+from studies.published import lin2016 as paper
+from sweep import Grid, sweep
+
+FOLDER = Path("results/fig10")
+GRID = Grid(rooms.lin_room, v_d=[0.6, 0.8, 1.0, 1.2, 1.4, 1.6, 1.8, 2.0], N=[100, 200, 300], seed=range(10))
+QUICK = Grid(rooms.lin_room, v_d=[0.6, 1.0, 1.4, 1.8], N=[100, 200], seed=range(3))
+TOLERANCE = 0.2  # of a published clearance time
+WIDE_ENOUGH = 1e-9  # m/s, for comparing axis values
+STATE_COLOURS = {"smooth": figures.GREEN, "transition": figures.BLUE, "phase_separation": figures.ORANGE}
+
+
+def measure(ds: xr.Dataset) -> xr.Dataset:
+    """Mean flow of every run, its mean over the runs that got out, blocked share, clearance time and states."""
+    flow, clearance = measures.mean_flow(ds), measures.clearance(ds)
+    out = measures.outcome_is(ds, "all_out")
+    means = measures.mean_over(flow.mean_flow.where(out), censored=flow.censored)
+    times = measures.mean_over(clearance.clearance_time.where(out), censored=clearance.censored)
+    shares = measures.blocked_share(ds)
+    return xr.Dataset(
+        {
+            "flow_of_run": flow.mean_flow,
+            **{name: means[name] for name in means if str(name).startswith("mean_flow")},
+            **{name: times[name] for name in times if str(name).startswith("clearance_time")},
+            **shares.data_vars,
+            **measures.states(ds).drop_vars([*shares.data_vars], errors="ignore").data_vars,
+        }
+    )
+
+
+# --- Figure -------------------------------------------------------------------------------------------------
+
+
+def plot(found: xr.Dataset) -> Figure:
+    """One panel for each N: every run, means with intervals, blocked shares, states; published bands behind."""
+    figure, axes = figures.panels(found.N.size)
+    for axis, N in zip(axes, found.N.values, strict=True):
+        column = found.sel(N=N)
+        _published(axis)
+        _runs(axis, column)
+        _states(axis, column)
+        axis.set_title(f"N = {N}")
+        axis.set_xlabel("desired speed $v_d$ / m s$^{-1}$")
+    axes[0].set_ylabel("mean flow / s$^{-1}$")
+    axes[0].set(ylim=(-0.16, 1.5), xlim=(float(found.v_d.min()) - 0.12, float(found.v_d.max()) + 0.12))
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    return figure
+
+
+def _published(axis: Axes) -> None:
+    """The paper's statements: the transition's band and mean, and how far phase separation scatters."""
+    begin, end = paper.TRANSITION_V_D
+    band, mean = paper.TRANSITION_FLOW, [paper.TRANSITION_MEAN_FLOW] * 2
+    axis.fill_between([begin, end], *band, color=figures.BLUE, alpha=0.15, lw=0, label="published: transition")
+    axis.plot([begin, end], mean, color=figures.BLUE, lw=0.8, ls="--", label="published: its mean")
+    scatter = paper.PHASE_SEPARATION_FLOW
+    axis.fill_between([end, 2.3], *scatter, color=figures.ORANGE, alpha=0.12, lw=0, label="published: separation")
+
+
+def _runs(axis: Axes, column: xr.Dataset) -> None:
+    got_out = column.flow_of_run.where(column.flow_of_run > 0)
+    for k, v_d in enumerate(column.v_d.values):
+        flows = got_out.isel(v_d=k).values
+        spread = np.linspace(-0.035, 0.035, flows.size)
+        axis.plot(v_d + spread, flows, ".", ms=3, color=figures.GREY, label="one run" if k == 0 else None)
+        _blocked(axis, v_d, int(column.blocked[k]), int(column.runs[k]), first=k == 0)
+    mean, low, high = column.mean_flow, column.mean_flow_low, column.mean_flow_high
+    arms = np.nan_to_num(np.abs([mean - low, high - mean]))
+    axis.errorbar(
+        column.v_d, mean, arms, fmt="o-", ms=3, color="black", capsize=2, lw=1, label="mean of those out, 95 %"
+    )
+
+
+def _blocked(axis: Axes, v_d: float, blocked: int, runs: int, first: bool) -> None:
+    """Blocked runs have no flow: crosses at zero, with how many of how many."""
+    if blocked:
+        axis.plot([v_d], [0.0], "x", ms=5, color=figures.ORANGE)
+        axis.annotate(f"{blocked}/{runs}", (v_d, 0.05), ha="center", fontsize=6, color=figures.ORANGE)
+    if first:
+        axis.plot([], [], "x", ms=5, color=figures.ORANGE, label="blocked / runs")
+
+
+def _states(axis: Axes, column: xr.Dataset) -> None:
+    """A strip below the flows: the state of each cell, and the boundaries with their intervals."""
+    for word, colour in STATE_COLOURS.items():
+        axis.fill_between([], [], color=colour, lw=0, label=f"found: {word.replace('_', ' ')}")
+    words = column.state.attrs["flag_meanings"].split()
+    half = float(np.diff(column.v_d).min()) / 2 if column.v_d.size > 1 else 0.1
+    for v_d, state in zip(column.v_d.values, column.state.values, strict=True):
+        colour = STATE_COLOURS.get(words[int(state)], "white")
+        axis.fill_between([v_d - half, v_d + half], -0.15, -0.1, color=colour, lw=0)
+    for name in ("transition_from", "phase_separation_from"):
+        at, low, high = (float(column[f"{name}{end}"]) for end in ("", "_low", "_high"))
+        if np.isfinite([at, low, high]).all():
+            axis.errorbar([at], [-0.125], xerr=[[at - low], [high - at]], fmt="k|", ms=7, capsize=2, lw=0.8)
+
+
+# --- Verdicts -----------------------------------------------------------------------------------------------
+
+
+def verdicts(found: xr.Dataset) -> list[Verdict]:
+    """Published statements against what was found, as far as the grid holds their v_d and N."""
+    return [
+        *(_clearance(found, v_d, time) for v_d, time in _published_times().items()),
+        *(_rises(found.sel(N=N)) for N in found.N.values),
+        _transition_flow(found),
+        _separation_flow(found),
+        _free_up_to(found, 1.2),
+        _blocks_from(found),
+        _grows_with(found, "v_d"),
+        _grows_with(found, "N"),
+        *(_boundary(found.sel(N=N), *which) for which in _boundaries() for N in found.N.values),
+    ]
+
+
+def _published_times() -> dict[float, float]:
+    plateau = {1.2: paper.FIG7_PLATEAU_CLEARANCE_TIME, 1.4: paper.FIG7_PLATEAU_CLEARANCE_TIME}
+    return paper.FIG7_CLEARANCE_TIME | plateau
+
+
+def _boundaries() -> list[tuple[str, str, float]]:
+    return [
+        ("transition_from", "transition from", paper.TRANSITION_FROM),
+        ("phase_separation_from", "phase separation from", paper.PHASE_SEPARATION_FROM),
+    ]
+
+
+def _cells(found: xr.Dataset, low: float, high: float, **where: int) -> xr.Dataset:
+    """The cells with v_d in [low, high]."""
+    return found.sel(where).sortby("v_d").sel(v_d=slice(low - WIDE_ENOUGH, high + WIDE_ENOUGH))
+
+
+def _clearance(found: xr.Dataset, v_d: float, published: float) -> Verdict:
+    statement = f"clearance time, N = 200, v_d = {v_d} m/s"
+    said = f"{published:.0f} s +- {TOLERANCE:.0%}"
+    cell = _cells(found, v_d, v_d, N=200)
+    if not cell.v_d.size:
+        return Verdict(statement, said, "not in this grid", None)
+    if not np.isfinite(cell.clearance_time.item()):
+        return Verdict(statement, said, "no run got out", False)
+    mean, low, high = (float(cell[f"clearance_time{end}"].item()) for end in ("", "_low", "_high"))
+    runs = int(cell.runs.item())
+    text = f"{interval(mean, low, high)} s, {runs - int(cell.blocked.item())} of {runs} runs out"
+    return Verdict(statement, said, text, abs(mean / published - 1) <= TOLERANCE)
+
+
+def _rises(column: xr.Dataset) -> Verdict:
+    flows = _cells(column, *paper.SMOOTH_V_D).mean_flow.values
+    text = " < ".join(f"{flow:.2f}" for flow in flows)
+    rising = bool((np.diff(flows) > 0).all())
+    return Verdict(f"flow rises up to 1.0 m/s, N = {int(column.N)}", "rising", f"{text} /s", rising)
+
+
+def _transition_flow(found: xr.Dataset) -> Verdict:
+    flows = _cells(found, *paper.TRANSITION_V_D).flow_of_run.values
+    flows = flows[flows > 0]
+    low, high = np.quantile(flows, [0.05, 0.95])
+    text = f"mean {flows.mean():.2f}, 5-95 % {low:.2f}-{high:.2f} /s"
+    near = abs(flows.mean() / paper.TRANSITION_MEAN_FLOW - 1) <= 0.1
+    said = f"mean {paper.TRANSITION_MEAN_FLOW} +- 10 %, {paper.TRANSITION_FLOW[0]}-{paper.TRANSITION_FLOW[1]} /s"
+    return Verdict("flow of runs that got out, 1.0 to 1.6 m/s", said, text, bool(near))
+
+
+def _separation_flow(found: xr.Dataset) -> Verdict:
+    flows = _cells(found, paper.PHASE_SEPARATION_FROM + 0.1, np.inf).flow_of_run.values
+    flows = flows[np.isfinite(flows)]
+    least, most = paper.PHASE_SEPARATION_FLOW
+    holds = bool(flows.min() == least and abs(flows.max() - most) <= 0.1 * most) if flows.size else None
+    text = f"{flows.min():.2f} to {flows.max():.2f} /s" if flows.size else "no runs"
+    return Verdict("flow scatters above 1.6 m/s", f"{least:.0f} to {most} /s +- 10 %", text, holds)
+
+
+def _free_up_to(found: xr.Dataset, v_d: float) -> Verdict:
+    cells = _cells(found, 0.0, v_d, N=200)
+    blocked, runs = int(cells.blocked.sum()), int(cells.runs.sum())
+    return Verdict(f"no blocking up to {v_d} m/s, N = 200", "0", f"{blocked} of {runs} runs", blocked == 0)
+
+
+def _blocks_from(found: xr.Dataset) -> Verdict:
+    column = found.sel(N=200).sortby("v_d")
+    some = column.v_d.values[column.blocked.values > 0]
+    text = f"first blocked run at {some[0]:.1f} m/s" if some.size else "no run blocked"
+    return Verdict("blocking appears, N = 200", "1.4 to 1.8 m/s", text, bool(some.size and 1.4 <= some[0] <= 1.8))
+
+
+def _grows_with(found: xr.Dataset, axis: str) -> Verdict:
+    """Blocked share along one axis, over all cells above 1.4 m/s."""
+    cells = _cells(found, 1.4, np.inf)
+    rest = "N" if axis == "v_d" else "v_d"
+    shares = cells.blocked.sum(rest) / cells.runs.sum(rest)
+    text = ", ".join(f"{float(value):g}: {float(share):.0%}" for value, share in zip(shares[axis], shares, strict=True))
+    rises = bool((np.diff(shares) >= 0).all() and shares[-1] > shares[0])
+    return Verdict(f"blocked share grows with {axis} (from 1.4 m/s)", "grows", text, rises)
+
+
+def _boundary(column: xr.Dataset, name: str, words: str, published: float) -> Verdict:
+    at, low, high = (float(column[f"{name}{end}"]) for end in ("", "_low", "_high"))
+    statement, said = f"{words}, N = {int(column.N)}", f"{published} m/s"
+    if not np.isfinite(at):
+        decision = column[f"{name}_decision"]
+        word = decision.attrs["flag_meanings"].split()[int(decision)]
+        return Verdict(statement, said, f"undecided ({word.replace('_', ' ')})", None)
+    return Verdict(statement, said, f"{interval(at, low, high, 2)} m/s", low <= published <= high)
+
+
+def main(quick: bool = False, jobs: int = 2) -> None:
+    """Sweep what is missing, draw the figure, print the verdicts."""
+    found = measure(sweep(QUICK if quick else GRID, FOLDER, jobs=jobs))
+    figures.draw(plot, found, FOLDER / "figure.png")
+    text = table(verdicts(found))
+    (FOLDER / "table.txt").write_text(text + "\n", "utf-8")
+    print(text, f"\n{FOLDER / 'figure.png'}", sep="\n")

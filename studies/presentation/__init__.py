@@ -1,0 +1,1 @@
+"""What all studies share: how figures look, and verdict tables."""

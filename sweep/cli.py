@@ -1,0 +1,170 @@
+"""The command `jamsweep`."""
+
+import importlib
+import pkgutil
+import sys
+from collections.abc import Sequence
+from importlib import metadata
+from pathlib import Path
+
+import click
+import xarray as xr
+
+from engine import FINGERPRINT, OUTCOMES, BadInput
+from engine.errors import require
+from sweep import runner
+from sweep.durable import require_writable
+from sweep.errors import DamagedFile, SweepStopped
+from sweep.gather import gather as gathered
+from sweep.grid import Grid
+from sweep.gridfile import read_gridfile
+from sweep.report import tell
+from sweep.run_command import run
+from sweep.store import Store
+
+FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130  # exit codes
+SETTINGS = {
+    "help_option_names": ["-h", "--help"],
+    "token_normalize_func": lambda word: word.replace("_", "-"),
+}
+STUDIES = "studies"
+jobs_option = click.option("--jobs", type=int, default=2, show_default=True, help="Number of worker processes.")
+dry_option = click.option("--dry-run", is_flag=True, help="Say what there is to do, and do nothing.")
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command; every error is one line on stderr and an exit code."""
+    try:
+        code = cli.main(arguments, prog_name="jamsweep", standalone_mode=False)
+    except click.exceptions.NoArgsIsHelpError as error:
+        click.echo(error.format_message())
+        code = 0
+    except click.ClickException as error:
+        code = _complain(error.format_message(), error.exit_code)
+    except BadInput as error:
+        code = _complain(error, BAD_INPUT)
+    except OSError as error:
+        code = _complain(f"{error.filename or 'file'}: {error.strerror or error}", BAD_INPUT)
+    except (SweepStopped, DamagedFile) as error:
+        code = _complain(error, FAILED)
+    except (KeyboardInterrupt, click.Abort):
+        code = INTERRUPTED
+    sys.exit(code or 0)
+
+
+def _complain(error: object, code: int) -> int:
+    tell("jamsweep: " + " ".join(str(error).split()))
+    return code
+
+
+def _version() -> str:
+    try:
+        return metadata.version("jamsweep")
+    except metadata.PackageNotFoundError:
+        return "(not installed)"
+
+
+@click.group(context_settings=SETTINGS)
+@click.version_option(_version(), message=f"%(prog)s %(version)s, engine {FINGERPRINT}")
+def cli() -> None:
+    """Sweep a crowd through a door until it jams.
+
+    \b
+    jamsweep run lin_room --v-d 1.0 --N 200 --seed 1 -o run.nc
+    jamsweep sweep grid.toml --jobs 2
+    jamsweep status results/mine
+    """  # noqa: D301  click reads \b as a character
+
+
+cli.add_command(run)
+
+
+@cli.command()
+@click.argument("file", type=click.Path(path_type=Path))
+@jobs_option
+@dry_option
+def sweep(file: Path, jobs: int, dry_run: bool) -> None:
+    """Run what is missing of the grid that FILE (TOML) describes, and gather it.
+
+    \b
+    room = "lin_room"
+    store = "results/mine"       # from where the command is given
+    [axes]
+    v_d = [0.6, 1.0]
+    seed = { first = 0, last = 9, step = 1 }
+    [constants]
+    N = 200
+
+    Exit code 1 if a run failed; the others are done nevertheless.
+    """  # noqa: D301  click reads \b as a character
+    grid, path = read_gridfile(file)
+    if dry_run:
+        click.echo(str(runner.plan_of(grid, Store(path))))
+        return
+    _finish(runner.sweep(grid, path, jobs), Store(path).dataset)
+
+
+def _finish(ds: xr.Dataset, path: Path) -> None:
+    number = {word: int((ds.outcome == code).sum()) for code, word in enumerate(OUTCOMES)}
+    click.echo(", ".join(f"{count} {word}" for word, count in number.items() if count))
+    click.echo(str(path))
+    if number["missing"]:
+        raise click.exceptions.Exit(FAILED)
+
+
+@cli.command()
+@click.argument("store", type=click.Path(path_type=Path))
+def status(store: Path) -> None:
+    """Say how much of the grid last swept into STORE is done.
+
+    \b
+    jamsweep status results/mine
+    """  # noqa: D301  click reads \b as a character
+    kept = Store(store)
+    plan = runner.plan_of(_grid_of(kept), kept)
+    failed = sum((kept.failed / f"{task.key}.txt").exists() for task in plan.missing)
+    click.echo(f"{plan}; {failed} of them failed before, see {kept.failed}" if failed else str(plan))
+
+
+@cli.command()
+@click.argument("store", type=click.Path(path_type=Path))
+@click.option("-o", "--output", type=click.Path(dir_okay=False, path_type=Path), help="Also write the dataset here.")
+def gather(store: Path, output: Path | None) -> None:
+    """Gather the runs in STORE into its dataset.nc, as far as they are done.
+
+    \b
+    jamsweep gather results/mine -o mine.nc
+    """  # noqa: D301  click reads \b as a character
+    if output:
+        require_writable(output.absolute().parent, "output folder")
+    kept = Store(store)
+    ds = gathered(_grid_of(kept), kept)
+    if output:
+        ds.to_netcdf(output)
+    click.echo(str(output or kept.dataset))
+
+
+def _grid_of(store: Store) -> Grid:
+    remedy = "name the folder of a sweep"
+    require(store.grid.is_file(), "store", f"'{store.path}'", "holds no sweep", remedy)
+    return Grid.from_json(store.grid.read_text("utf-8"))
+
+
+@cli.command()
+@click.argument("name")
+@click.option("--quick", is_flag=True, help="A thinned grid that ends within two minutes.")
+@jobs_option
+def study(name: str, quick: bool, jobs: int) -> None:
+    """Run the study NAME: its grid, its table and its figure.
+
+    \b
+    jamsweep study lin_fig10 --quick
+    """  # noqa: D301  click reads \b as a character
+    package = importlib.import_module(STUDIES)
+    known = sorted(module.name for module in pkgutil.iter_modules(package.__path__) if not module.ispkg)
+    require(name in known, "study", repr(name), "is not known", f"choose one of {', '.join(known)}")
+    importlib.import_module(f"{STUDIES}.{name}").main(quick=quick, jobs=jobs)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,89 @@
+"""What a sweep says while it runs, on stderr."""
+
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+
+SILENCE = 10.0  # s between lines where no bar can be drawn
+
+
+def tell(line: str) -> None:
+    """Say one line."""
+    print(line, file=sys.stderr, flush=True)
+
+
+@contextmanager
+def late_word(after: float, line: str, shown: bool = True) -> Iterator[None]:
+    """Say a line if the block takes longer than `after` seconds."""
+    timer = threading.Timer(after, tell, [line])
+    if shown:
+        timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
+
+
+@contextmanager
+def progress(total: int, shown: bool = True) -> Iterator[Callable[[], None]]:
+    """Show how many of `total` runs are over: a bar on a terminal, elsewhere a line now and then.
+
+    Yields
+    ------
+    A function to call once for each run that is over.
+    """
+    console = Console(stderr=True)
+    if not shown:
+        yield lambda: None
+    elif console.is_terminal or console.is_jupyter:
+        with _bar(console) as bar:
+            task = bar.add_task("runs", total=total)
+            yield lambda: bar.advance(task)
+    else:
+        yield _Lines(total).advance
+
+
+def _bar(console: Console) -> Progress:
+    left = TextColumn("left")
+    return Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TextColumn("·"),
+        TimeRemainingColumn(),
+        left,
+        console=console,
+    )
+
+
+class _Lines:
+    """Progress as lines of text."""
+
+    def __init__(self, total: int) -> None:
+        self.total, self.over = total, 0
+        self.begin = self.said = time.monotonic()
+
+    def advance(self) -> None:
+        self.over += 1
+        now = time.monotonic()
+        if now - self.said >= SILENCE or self.over == self.total:
+            left = (now - self.begin) / self.over * (self.total - self.over)
+            tell(f"{self.over} of {self.total} runs over" + (f", about {_spoken(left)} left" if left else ""))
+            self.said = now
+
+
+def _spoken(seconds: float) -> str:
+    return f"{seconds:.0f} s" if seconds < 120 else f"{seconds / 60:.0f} min"

@@ -1,0 +1,97 @@
+"""`jamsweep run`: each room a subcommand, each of its keywords an option."""
+
+import inspect
+import re
+from pathlib import Path
+from typing import Any, get_type_hints
+
+import click
+
+from engine import Scenario, simulate
+from engine.errors import require
+from engine.rooms import ROOMS
+from sweep.durable import require_writable
+from sweep.grid import Room
+from sweep.runfile import write_run
+from sweep.schema import PARAMETERS
+
+
+class Rooms(click.Group):
+    """One subcommand for each room, its options the room's keywords."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """The rooms' names."""
+        return list(ROOMS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command:
+        """The subcommand of a room."""
+        name = cmd_name.replace("-", "_")
+        require(name in ROOMS, "room", repr(cmd_name), "is not known", f"choose one of {', '.join(ROOMS)}")
+        return _room_command(name, ROOMS[name])
+
+
+@click.group(cls=Rooms)
+def run() -> None:
+    """Run one scenario of a room.
+
+    \b
+    jamsweep run lin_room --v-d 1.0 --N 200 --seed 1 -o run.nc
+    """  # noqa: D301  click reads \b as a character
+
+
+def _room_command(name: str, room: Room) -> click.Command:
+    def once(output: Path | None, **parameters: Any) -> None:
+        _run_once(room(**parameters), output)
+
+    target = click.Path(dir_okay=False, path_type=Path)
+    out = click.Option(["-o", "--output"], type=target, help="netCDF file to write the run to.")
+    summary, example = first_line(room), f"\b\njamsweep run {name} --seed 1 -o run.nc"
+    options, words = [*options_of(room), out], f"{summary}\n\n{example}"
+    return click.Command(name, params=options, callback=once, help=words, short_help=summary)
+
+
+def _run_once(scenario: Scenario, output: Path | None) -> None:
+    if output:
+        require_writable(output.absolute().parent, "output folder")
+    result = simulate(scenario)
+    click.echo(str(result))
+    if output:
+        write_run(result, output)
+        click.echo(str(output))
+
+
+def options_of(room: Room) -> list[click.Parameter]:
+    """One option for each keyword of a room, with its type, its default and what is known about it."""
+    kinds, words = get_type_hints(room), parameter_words(room)
+    words |= {name: _with_units(*known) for name, known in PARAMETERS.items()}
+    parameters = inspect.signature(room).parameters.values()
+    return [_option(p.name, kinds.get(p.name, str), p.default, words.get(p.name, "")) for p in parameters]
+
+
+def parameter_words(room: Room) -> dict[str, str]:
+    """What the section Parameters of a docstring says about each: "A, B : text" holds for both."""
+    section = inspect.getdoc(room) or ""
+    section = section.partition("Parameters\n")[2].partition("\n\n")[0]
+    entries = re.findall(r"^(\w+(?:, \w+)*) : (.*(?:\n\s+.*)*)", section, flags=re.MULTILINE)
+    return {name: " ".join(text.split()) for names, text in entries for name in names.split(", ")}
+
+
+def first_line(room: Room) -> str:
+    """The first line of a docstring."""
+    return (inspect.getdoc(room) or "").partition("\n")[0]
+
+
+def _with_units(units: str, long_name: str) -> str:
+    return long_name if units == "1" else f"{long_name}, {units}"
+
+
+def _option(name: str, kind: type, default: Any, words: str) -> click.Option:
+    flag = "--" + name.replace("_", "-")
+    shared: dict[str, Any] = {"help": words, "show_default": True}
+    if default is inspect.Parameter.empty:
+        shared["required"] = True
+    else:
+        shared["default"] = default
+    if kind is bool:
+        return click.Option([f"{flag}/--no-{flag[2:]}", name], **shared)
+    return click.Option([flag, name], type=kind, **shared)

@@ -1,0 +1,145 @@
+"""Names, dimensions, types, units and descriptions of everything that is stored."""
+
+import hashlib
+import platform
+from collections.abc import Mapping
+from operator import attrgetter
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+import numba
+import numpy as np
+
+from engine import FINGERPRINT, OUTCOMES, Run, Scenario
+
+SCHEMA_VERSION = 1
+CONVENTIONS = "CF-1.11"
+MISSING = OUTCOMES.index("missing")
+FLAGS = {"flag_values": np.arange(len(OUTCOMES), dtype=np.int8), "flag_meanings": " ".join(OUTCOMES)}
+
+
+class Variable(NamedTuple):
+    """One variable of a run file, and of the gathered dataset if it has a value to pad with.
+
+    Dimensions: `run` (length 1), `exit` (persons who left, in order), `person`, `sample`, `contact`.
+    """
+
+    name: str
+    dims: tuple[str, ...]
+    dtype: str
+    units: str
+    long_name: str
+    source: str  # where a Run has it
+    pad: float | int | None = None  # in the gathered dataset, where there is none
+    attrs: Mapping[str, Any] = MappingProxyType({})
+    counts: str = ""  # CF contiguous ragged arrays: the dimension whose elements are counted
+
+    def attributes(self) -> dict[str, Any]:
+        """What the variable says about itself wherever it stands."""
+        return {"units": self.units, "long_name": self.long_name, **self.attrs}
+
+
+RUN, EXIT, PERSON, STATE, CONTACT = ("run",), ("exit",), ("person",), ("sample", "person"), ("contact",)
+
+VARIABLES = (
+    Variable("exit_time", EXIT, "f8", "s", "time of leaving", "exit_time", np.nan),
+    Variable("exit_person", EXIT, "i4", "1", "person who left, -1 for nobody", "exit_person", -1),
+    Variable("exit_x", EXIT, "f8", "m", "x where the person left", "exit_x", np.nan),
+    Variable("exit_y", EXIT, "f8", "m", "y where the person left", "exit_y", np.nan),
+    Variable("exit_door", EXIT, "i2", "1", "exit that the person left by, -1 for none", "exit_door", -1),
+    Variable("outcome", RUN, "i1", "1", "how the run ended", "outcome", MISSING, FLAGS),
+    Variable("end_time", RUN, "f8", "s", "time at which the run ended", "end_time", np.nan),
+    Variable("N_out", RUN, "i4", "1", "number of persons who left", "N_out", 0, counts="exit"),
+    Variable("persons", RUN, "i4", "1", "number of persons at the start", "N", 0),
+    Variable(
+        "max_overlap",
+        RUN,
+        "f8",
+        "m",
+        "largest overlap of two bodies, or of one with a wall",
+        "max_overlap",
+        np.nan,
+    ),
+    Variable("max_speed", RUN, "f8", "m s-1", "largest speed of anybody", "max_speed", np.nan),
+    Variable("steps", RUN, "i8", "1", "number of time steps", "steps", 0),
+    Variable("rebuilds", RUN, "i8", "1", "number of times the neighbour lists were made", "rebuilds", 0),
+    Variable("culprit", RUN, "i4", "1", "person whose place became no number, -1 for nobody", "culprit"),
+    Variable("radius", PERSON, "f8", "m", "radius", "start.radius"),
+    Variable("mass", PERSON, "f8", "kg", "mass", "start.mass"),
+    Variable("v_d_person", PERSON, "f8", "m s-1", "desired speed", "start.v_d"),
+    Variable("x0", PERSON, "f8", "m", "x at the start", "start.x"),
+    Variable("y0", PERSON, "f8", "m", "y at the start", "start.y"),
+    Variable("vx0", PERSON, "f8", "m s-1", "x component of the velocity at the start", "start.vx"),
+    Variable("vy0", PERSON, "f8", "m s-1", "y component of the velocity at the start", "start.vy"),
+    Variable("spin0", PERSON, "f8", "rad s-1", "angular velocity at the start", "start.spin"),
+    Variable("time", ("sample",), "f8", "s", "time", "samples.time"),
+    Variable("x", STATE, "f4", "m", "x, nan after leaving", "samples.x"),
+    Variable("y", STATE, "f4", "m", "y, nan after leaving", "samples.y"),
+    Variable("vx", STATE, "f4", "m s-1", "x component of the velocity", "samples.vx"),
+    Variable("vy", STATE, "f4", "m s-1", "y component of the velocity", "samples.vy"),
+    Variable("spin", STATE, "f4", "rad s-1", "angular velocity", "samples.spin"),
+    Variable("row_size", ("sample",), "i4", "1", "number of contacts", "samples.row_size", counts="contact"),
+    Variable("contact_i", CONTACT, "i4", "1", "person in touch", "samples.contact_i"),
+    Variable("contact_j", CONTACT, "i4", "1", "person it touches, or wall w as -1 - w", "samples.contact_j"),
+    Variable("contact_slip", CONTACT, "f4", "m", "length of the tangential spring", "samples.contact_slip"),
+)
+GATHERED = tuple(variable for variable in VARIABLES if variable.pad is not None)
+
+PARAMETERS = {  # keywords of rooms: units and long_name of a coordinate
+    "v_d": ("m s-1", "desired speed"),
+    "N": ("1", "number of persons"),
+    "seed": ("1", "number of the run"),
+    "L": ("m", "width of the exit"),
+    "A": ("N", "strength of the social force"),
+    "B": ("m", "range of the social force"),
+    "phi": ("1", "anisotropy of the social force"),
+    "mu": ("1", "friction coefficient"),
+    "tau": ("s", "reaction time"),
+    "size": ("m", "side of the room"),
+    "dt": ("s", "time step"),
+    "force_tolerance": ("N", "social force that is neglected"),
+    "patience": ("s", "time without anybody leaving after which exits count as blocked"),
+    "time_limit": ("s", "time at which a run is ended"),
+    "every": ("s", "sampling interval"),
+}
+RANK = {"units": "1", "long_name": "rank in the order of leaving"}
+
+
+def run_key(scenario: Scenario) -> str:
+    """What a run is found by: hash of its exact description, the schema and the engine (64 hex digits)."""
+    parts = (scenario.canonical(), str(SCHEMA_VERSION), FINGERPRINT)
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+
+
+def recorded(run: Run) -> tuple[Variable, ...]:
+    """The variables that this run has."""
+    absent: set[str] = set()
+    if run.samples is None:
+        absent |= {"sample", "contact"}
+    elif not run.scenario.record.contacts:
+        absent |= {"contact"}
+    return tuple(v for v in VARIABLES if not absent.intersection((*v.dims, v.counts)))
+
+
+def fact(run: Run, variable: Variable) -> np.ndarray:
+    """The values of a variable, of its type and with its dimensions."""
+    value = attrgetter(variable.source)(run)
+    value = OUTCOMES.index(value) if variable.name == "outcome" else value
+    return np.array(value, dtype=variable.dtype, ndmin=1)
+
+
+def run_attributes(run: Run) -> dict[str, Any]:
+    """Global attributes of a run file; the last one says that the others and all values are there."""
+    return {
+        "Conventions": CONVENTIONS,
+        "title": "One run of a crowd that leaves a room",
+        "comment": str(run),
+        "scenario": run.scenario.to_json(),
+        "run_key": run_key(run.scenario),
+        "schema_version": np.int32(SCHEMA_VERSION),
+        "engine_fingerprint": FINGERPRINT,
+        "numba_version": numba.__version__,
+        "numpy_version": np.__version__,
+        "python_version": platform.python_version(),
+        "complete": np.int32(1),
+    }

@@ -1,0 +1,154 @@
+"""What holds for any number of workers, and when they fail or die."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from engine import rooms
+from sweep import Grid, Store, SweepStopped, sweep, worker
+from sweep.schema import run_key
+from sweep.worker import Done, Failed, Outdated, work
+from tests.sweep.tiny import TINY, run_files
+
+ROOT = Path(rooms.__file__).parents[1]
+CROWDED = {"size": 2.2, "time_limit": 0.5}  # ten persons cover 59 % of it: not to be placed at random
+
+
+def test_one_and_two_workers_give_the_same_bits(grid: Grid, tmp_path: Path) -> None:
+    one, two = (sweep(grid, tmp_path / str(jobs), jobs=jobs) for jobs in (1, 2))
+    xr.testing.assert_identical(one, two)
+    assert one.exit_time.values.tobytes() == two.exit_time.values.tobytes()
+    assert run_files(tmp_path / "1") == run_files(tmp_path / "2") != {}
+    workers = {entry.pid for entry in Store(tmp_path / "2").finished().values()}
+    assert os.getpid() not in workers
+
+
+def test_the_order_of_the_runs_changes_nothing(tmp_path: Path) -> None:
+    ordered = sweep(Grid("lin_room", v_d=[1.0, 1.4], seed=[0, 1, 2], **TINY), tmp_path / "ordered", jobs=1)
+    shuffled = sweep(Grid("lin_room", seed=[2, 0, 1], v_d=[1.4, 1.0], **TINY), tmp_path / "shuffled", jobs=2)
+    assert run_files(tmp_path / "ordered") == run_files(tmp_path / "shuffled")
+    back = shuffled.sortby(["seed", "v_d"]).transpose(*ordered.dims)
+    assert np.array_equal(back.exit_time, ordered.exit_time, equal_nan=True)
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_a_failing_run_is_named_and_the_others_go_on(store: Path, capsys: pytest.CaptureFixture, jobs: int) -> None:
+    grid = Grid("lin_room", N=[10, 3], seed=range(2), **CROWDED)
+    ds = sweep(grid, store, jobs=jobs)
+    said = capsys.readouterr().err
+    assert (ds.outcome.sel(N=10) == 0).all()
+    assert (ds.outcome.sel(N=3) > 0).all()
+    for seed in (0, 1):
+        assert said.count(f"N = 10, seed = {seed}: BadInput: N 10 persons do not fit") == 1
+    assert "2 of 4 runs failed" in said
+    assert "Traceback" not in said
+    note = store / "failed" / f"{run_key(grid.scenario({'N': 10, 'seed': 1}))}.txt"
+    assert "N = 10, seed = 1" in note.read_text()
+    assert "Traceback" in note.read_text()
+
+
+def test_a_failure_overcome_is_forgotten(store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    grid = Grid("lin_room", **TINY)
+    with monkeypatch.context() as patch:
+        patch.setattr(worker, "simulate", lambda scenario: 1 / 0)
+        assert int(sweep(grid, store, jobs=1).outcome) == 0
+    assert len(list((store / "failed").iterdir())) == 1
+    assert int(sweep(grid, store, jobs=1).outcome) > 0
+    assert list((store / "failed").iterdir()) == []
+
+
+def test_an_error_comes_back_as_data(store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    scenario = rooms.lin_room(**TINY)
+    key = run_key(scenario)
+    Store(store).make()
+    assert isinstance(work(scenario, str(store), key), Done)
+    monkeypatch.setattr(worker, "simulate", lambda scenario: 1 / 0)
+    result = work(scenario, str(store), key)
+    assert isinstance(result, Failed)
+    assert result.error == "ZeroDivisionError: division by zero"
+
+
+def test_an_engine_edited_meanwhile_stops_the_sweep(grid: Grid, store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(worker, "run_key", lambda scenario: "another")
+    assert isinstance(work(rooms.lin_room(**TINY), str(store), "asked for"), Outdated)
+    with pytest.raises(SweepStopped, match="engine's sources were edited meanwhile: 0 of 6 runs are kept"):
+        sweep(grid, store, jobs=1)
+
+
+@contextmanager
+def endless_sweep(folder: Path) -> Iterator[subprocess.Popen]:
+    """A sweep of four tiny runs and of four that never end, in a process group of its own."""
+    toml = folder / "grid.toml"
+    toml.write_text(
+        f'room = "lin_room"\nstore = "{folder / "results"}"\n'
+        "[axes]\ntime_limit = [0.1, 1e6]\nseed = [0, 1, 2, 3]\n"
+        "[constants]\nN = 5\nsize = 4\nv_d = 0\npatience = 1e6\n"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-m", "sweep.cli", "sweep", toml, "--jobs", "2"],
+        stderr=subprocess.PIPE,
+        text=True,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        start_new_session=True,
+    )
+    try:
+        yield process
+    finally:
+        with suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+
+
+def wait_for_runs(store: Path, number: int) -> None:
+    end = time.monotonic() + 60.0
+    while time.monotonic() < end:
+        if len(Store(store).finished()) >= number:
+            return
+        time.sleep(0.05)
+    raise AssertionError(f"fewer than {number} runs after a minute")
+
+
+def workers_of(parent: int) -> list[int]:
+    """Process ids of a sweep's loky workers."""
+    found = []
+    for folder in Path("/proc").glob("[0-9]*"):
+        try:
+            ppid = int((folder / "stat").read_text().rpartition(")")[2].split()[1])
+            command = (folder / "cmdline").read_bytes()
+        except OSError:
+            continue
+        if ppid == parent and b"popen_loky" in command:
+            found.append(int(folder.name))
+    return found
+
+
+def test_a_killed_worker_costs_no_finished_run(tmp_path: Path) -> None:
+    with endless_sweep(tmp_path) as process:
+        wait_for_runs(tmp_path / "results", 4)
+        os.kill(workers_of(process.pid)[0], signal.SIGKILL)
+        said = process.communicate(timeout=60)[1]
+    assert process.returncode == 1
+    assert "Traceback" not in said
+    line = next(line for line in said.splitlines() if "a worker process was killed" in line)  # joblib may say more
+    assert "4 of 8 runs are kept, run again to resume" in line
+    assert len(Store(tmp_path / "results").finished()) == 4
+
+
+def test_ctrl_c_keeps_finished_runs_and_says_so(tmp_path: Path) -> None:
+    with endless_sweep(tmp_path) as process:
+        wait_for_runs(tmp_path / "results", 4)
+        os.killpg(process.pid, signal.SIGINT)
+        said = process.communicate(timeout=60)[1]
+    assert process.returncode == 130
+    assert "Traceback" not in said
+    assert "interrupted: 4 of 8 runs are kept, run again to resume" in said.splitlines()
+    assert len(Store(tmp_path / "results").finished()) == 4
