@@ -158,12 +158,19 @@ def study(name: str, quick: bool, jobs: int) -> None:
     """Run the study NAME: its grid, its table and its figure.
 
     \b
-    jamsweep study lin_fig10 --quick
+    jamsweep study fig10 --quick
     """  # noqa: D301  click reads \b as a character
+    modules = _studies()
+    plain = name.replace("_", "-").removeprefix("lin-")
+    require(plain in modules, "study", repr(name), "is not known", f"choose one of {', '.join(modules)}")
+    importlib.import_module(modules[plain]).main(quick=quick, jobs=jobs)
+
+
+def _studies() -> dict[str, str]:
+    """Names of the studies and their modules: fig10 is Lin's, studies.lin_fig10."""
     package = importlib.import_module(STUDIES)
-    known = sorted(module.name for module in pkgutil.iter_modules(package.__path__) if not module.ispkg)
-    require(name in known, "study", repr(name), "is not known", f"choose one of {', '.join(known)}")
-    importlib.import_module(f"{STUDIES}.{name}").main(quick=quick, jobs=jobs)
+    names = [module.name for module in pkgutil.iter_modules(package.__path__) if not module.ispkg]
+    return {name.removeprefix("lin_").replace("_", "-"): f"{STUDIES}.{name}" for name in sorted(names)}
 
 
 if __name__ == "__main__":

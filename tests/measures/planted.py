@@ -36,9 +36,7 @@ def gathered(runs: Sequence[Run], dim: str = "seed", ranks: int | None = None) -
     )
 
 
-def rising_to(
-    bend: float, least: float = 0.6, plateau: float = 0.9, power: float = 1.0, fall: float = 0.0
-) -> Callable:
+def rising_to(bend: float, least: float = 0.6, plateau: float = 0.9, power: float = 1.0, fall: float = 0.0) -> Callable:
     """Mean flow that rises from `least` at 0.6 m/s to `plateau` at the bend, then falls with slope `fall`."""
     return lambda v_d: (
         plateau

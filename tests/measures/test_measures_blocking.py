@@ -44,9 +44,7 @@ def test_hazard_is_blocked_runs_over_exits_made_with_poisson_limits():
     found = hazard_of_blocking(gathered([STUCK, STUCK, STUCK, OUT, *LOST]))
     assert (found.exits, found.blocked) == (5, 3)
     assert found.hazard_of_blocking == pytest.approx(0.6)
-    np.testing.assert_allclose(
-        found.hazard_of_blocking_low * 5, 0.6187, atol=1e-4
-    )  # Garwood's table, 3 events
+    np.testing.assert_allclose(found.hazard_of_blocking_low * 5, 0.6187, atol=1e-4)  # Garwood's table, 3 events
     np.testing.assert_allclose(found.hazard_of_blocking_high * 5, 8.7673, atol=1e-4)
 
 

@@ -76,9 +76,7 @@ def test_a_rank_beyond_the_crowd_has_no_time_and_is_not_awaited(runs):
     found = time_of_exit(runs, [3, 4])
     assert found.time_of_exit.sel(n=4).isnull().all()
     assert not found.censored.sel(n=4).any()
-    np.testing.assert_array_equal(
-        found.time_of_exit.sel(n=3), [4.0, np.inf, np.inf, np.nan, np.nan, np.nan, np.inf]
-    )
+    np.testing.assert_array_equal(found.time_of_exit.sel(n=3), [4.0, np.inf, np.inf, np.nan, np.nan, np.nan, np.inf])
 
 
 def test_constants_stay_as_scalar_coordinates_and_axes_may_come_in_any_order(runs):

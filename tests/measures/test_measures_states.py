@@ -62,9 +62,7 @@ def test_cells_are_resampled_independently_of_each_other():
 
 
 def test_states_are_named_in_the_order_of_the_paper():
-    found = states(
-        with_blocked(column(rising_to(1.1), FREE, noise=0.02), {1.6: 3, 1.8: 8, 2.0: 10}), rules=QUICK
-    )
+    found = states(with_blocked(column(rising_to(1.1), FREE, noise=0.02), {1.6: 3, 1.8: 8, 2.0: 10}), rules=QUICK)
     assert words(found.state) == ["smooth"] * 3 + ["transition"] * 2 + ["phase_separation"] * 3
     assert words(found.transition_from_decision) == words(found.phase_separation_from_decision) == ["decided"]
     assert found.n_resamples == QUICK.resamples

@@ -30,9 +30,7 @@ def test_no_value_has_no_mean_and_one_value_has_no_interval():
 def test_two_values_say_little_of_their_mean():
     found = mean_over(sample([1.0, 3.0]))
     arm = 12.7062 / 1.95996 * np.sqrt(2.0)  # Student's t with one degree of freedom, half-range 1
-    np.testing.assert_allclose(
-        [found.time_low, found.time, found.time_high], [2 - arm, 2, 2 + arm], rtol=1e-4
-    )
+    np.testing.assert_allclose([found.time_low, found.time, found.time_high], [2 - arm, 2, 2 + arm], rtol=1e-4)
 
 
 def test_equal_values_have_an_interval_of_no_width():
