@@ -21,7 +21,7 @@ def _make_positive(part: Any, remedy: str) -> None:
     for field in fields(part):
         value = getattr(part, field.name)
         good = isinstance(value, int | float | np.number) and math.isfinite(value) and value > 0
-        require(good, field.name, value, "is not finite and positive", remedy)
+        require(bool(good), field.name, value, "is not finite and positive", remedy)
         object.__setattr__(part, field.name, float(value))
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import matplotlib.pyplot as plt
@@ -12,7 +13,7 @@ from matplotlib.figure import Figure
 BLUE, ORANGE, GREEN, PURPLE, GREY = "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a8a8a"  # Okabe & Ito (2008)
 COLUMN, PAGE = 3.4, 7.1  # in, widths of print
 
-STYLE = {
+STYLE: dict[Any, Any] = {  # matplotlib types its keys one by one
     "font.size": 8,
     "axes.titlesize": 8,
     "axes.labelsize": 8,
