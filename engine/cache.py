@@ -17,18 +17,18 @@ FOLDERS_KEPT = 8
 
 
 def fingerprint(sources: Path = SOURCES) -> str:
-    """Hash of what the package's sources mean: their syntax trees without docstrings (16 hex digits)."""
+    """Hash of what the package's sources mean: their code without comments and docstrings (16 hex digits)."""
     digest = hashlib.sha256()
     for path in sorted(sources.glob("*.py")):
         digest.update(path.name.encode())
-        digest.update(ast.dump(_without_docstrings(ast.parse(path.read_text("utf-8")))).encode())
+        digest.update(ast.unparse(_without_docstrings(ast.parse(path.read_text("utf-8")))).encode())
     return digest.hexdigest()[:16]
 
 
 def _without_docstrings(tree: ast.Module) -> ast.Module:
     for node in ast.walk(tree):
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node, clean=False):
-            node.body = node.body[1:]
+            node.body = node.body[1:] or [ast.Pass()]
     return tree
 
 

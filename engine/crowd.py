@@ -145,7 +145,11 @@ class Crowd:
             least = "positive" if name in ("radius", "mass") else ("not negative" if name == "v_d" else "finite")
             bad = [v for v in np.broadcast_to(values, N) if not _holds(v, least)]
             require(not bad, name, bad[0] if bad else "", f"is not finite and {least}", "mend the array")
-        return Given(*(tuple(np.broadcast_to(values, N).astype(float).tolist()) for values in arrays.values()))
+        crowd = Given(*(tuple(np.broadcast_to(values, N).astype(float).tolist()) for values in arrays.values()))
+        places = list(zip(crowd.x, crowd.y, strict=True))
+        twice = next((place for place in places if places.count(place) > 1), None) if len(set(places)) < N else None
+        require(twice is None, "place", twice, "is given to two persons", "move one of them")
+        return crowd
 
 
 def _holds(value: float, least: str) -> bool:

@@ -10,6 +10,8 @@ from typing import Any
 
 from numba.extending import overload
 
+from engine.errors import require
+
 Law = Callable[..., Any]
 
 
@@ -30,6 +32,13 @@ class Generic:
         """Register the decorated function as the law for these types of parameters."""
 
         def register(law: Law) -> Law:
+            require(
+                law.__module__.partition(".")[0] == "engine",
+                "law",
+                f"{law.__module__}.{law.__qualname__}",
+                "stands outside the package engine, whose sources tell stale kernels and runs from fresh ones",
+                "move it to engine/laws.py",
+            )
             self.laws.update(dict.fromkeys(parameters, law))
             return law
 

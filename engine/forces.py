@@ -22,7 +22,7 @@ def forces(model, scene, people, n, near, dt, scratch, touching):
     ----------
     dt : time over which tangential springs stretch, s; 0 when the forces are only looked at
     scratch : (ROWS * BLOCK,) float64
-    touching : (BLOCK,) uint32
+    touching : (BLOCK + 1,) uint32
 
     Returns
     -------
@@ -38,7 +38,7 @@ def forces(model, scene, people, n, near, dt, scratch, touching):
 def _driving(model, exits, people, n):
     """Start the sums with the driving force; the desired direction is that of the nearest exit."""
     for i in range(n):
-        ex, ey = desired_direction(exits, people.x[i], people.y[i], people.radius[i])
+        ex, ey = desired_direction(exits, people.x[i], people.y[i], people.radius[i], people.out[i])
         people.ex[i], people.ey[i] = ex, ey
         people.fx[i] = drive(model.drive, people.mass[i], people.v_d[i], ex, people.vx[i])
         people.fy[i] = drive(model.drive, people.mass[i], people.v_d[i], ey, people.vy[i])
@@ -46,26 +46,23 @@ def _driving(model, exits, people, n):
 
 
 @njit(cache=True, error_model="numpy")
-def desired_direction(exits, x, y, radius):
+def desired_direction(exits, x, y, radius, out):
     """Towards the nearest point of the nearest exit, its line shortened by the radius at both ends.
 
-    Straight out once beyond the line; no direction where there is no exit.
+    Straight out for those who have crossed an exit (`out`, from 1); no direction where there is no exit.
     """
+    if out > 0:
+        return exits[out - 1, 5], exits[out - 1, 6]
     ex, ey, nearest = 0.0, 0.0, math.inf
     for k in range(exits.shape[0]):
         x0, y0, ux, uy, length = exits[k, 0], exits[k, 1], exits[k, 2], exits[k, 3], exits[k, 4]
-        nx, ny = exits[k, 5], exits[k, 6]
         along = (x - x0) * ux + (y - y0) * uy
-        beyond = (x - x0) * nx + (y - y0) * ny
         aim = min(max(along, min(radius, 0.5 * length)), max(length - radius, 0.5 * length))
         dx, dy = x0 + aim * ux - x, y0 + aim * uy - y
         distance = math.sqrt(dx * dx + dy * dy)
         if distance < nearest:
             nearest = distance
-            if beyond >= 0.0 and 0.0 <= along <= length:
-                ex, ey = nx, ny
-            else:
-                ex, ey = dx / distance, dy / distance
+            ex, ey = (dx / distance, dy / distance) if distance > 0.0 else (exits[k, 5], exits[k, 6])
     return ex, ey
 
 

@@ -17,8 +17,8 @@ class Rules(NamedTuple):
     """How a run is computed and when it ends."""
 
     dt: float  # s
-    gap: float  # m, reach of the force between persons
-    wall_gap: float  # m, reach of the walls' force
+    reach: float  # m, largest gap of two persons that interact
+    wall_reach: float  # m, of person and wall
     skin: float  # m
     last_step: int  # the time limit
     patience: int  # steps without anybody getting out after which the exits are blocked
@@ -38,7 +38,7 @@ class Clock(NamedTuple):
     culprit: int  # person who is nowhere; -1: none
 
 
-class Exits(NamedTuple):
+class Log(NamedTuple):
     """Who left, in the order of leaving; arrays (N,)."""
 
     time: np.ndarray  # s
@@ -49,10 +49,10 @@ class Exits(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy")
-def advance(model, scene, rules, people, near, exits, clock, until):
+def advance(model, scene, rules, people, near, log, clock, until):
     """Advance a run to step `until` or its end, by velocity Verlet (Lin et al. 2016, Eqs. 7-11).
 
-    Forces are evaluated with the half-step velocities (sub-step c). `people` and `exits` are changed in
+    Forces are evaluated with the half-step velocities (sub-step c). `people` and `log` are changed in
     place; the new lists and clock are returned. A run begins with a step of no length, which makes the
     lists and the first forces.
     """
@@ -60,11 +60,11 @@ def advance(model, scene, rules, people, near, exits, clock, until):
     N_out, last_out, outcome, rebuilds = clock.N_out, clock.last_out, clock.outcome, clock.rebuilds
     max_overlap, max_speed_squared, culprit = clock.max_overlap, clock.max_speed**2, clock.culprit
     scratch, touching = np.empty(ROWS * BLOCK), np.empty(BLOCK + 1, np.uint32)
-    gap, wall_gap = rules.gap + rules.skin, rules.wall_gap + rules.skin
+    gap, wall_gap = rules.reach + rules.skin, rules.wall_reach + rules.skin
     while step < until and outcome == RUNNING:
         dt = rules.dt if step >= 0 else 0.0
         _kick(model, people, n, 0.5 * dt)
-        crossed, gone = _drift(scene.exits, people, n, dt, step, exits, N_out)
+        crossed, gone = _drift(scene.exits, people, n, dt, step, log, N_out)
         step += 1
         if crossed > 0:
             N_out += crossed
@@ -105,7 +105,7 @@ def _kick(model, people, n, time):
 
 
 @njit(cache=True, error_model="numpy")
-def _drift(lines, people, n, dt, step, exits, N_out):
+def _drift(lines, people, n, dt, step, log, N_out):
     """Move everybody by dt; log who crosses an exit, at the time and place interpolated in the step.
 
     Returns
@@ -125,9 +125,9 @@ def _drift(lines, people, n, dt, step, exits, N_out):
                 at_x, at_y = x + part * dt * people.vx[i], y + part * dt * people.vy[i]
                 if _within(lines, k, at_x, at_y):
                     place = N_out + crossed
-                    exits.time[place], exits.person[place] = (step + part) * dt, people.who[i]
-                    exits.x[place], exits.y[place], exits.door[place] = at_x, at_y, k
-                    people.out[i] = 1
+                    log.time[place], log.person[place] = (step + part) * dt, people.who[i]
+                    log.x[place], log.y[place], log.door[place] = at_x, at_y, k
+                    people.out[i] = k + 1
                     crossed += 1
         gone |= _has_gone(lines, people, i)
     return crossed, gone
@@ -147,13 +147,9 @@ def _within(lines, k, x, y):
 
 @njit(cache=True, error_model="numpy")
 def _has_gone(lines, people, i):
-    """Whether person i is out, and beyond every exit's line by as much as that exit lets people walk on."""
-    if people.out[i] == 0:
-        return False
-    for k in range(lines.shape[0]):
-        if _beyond(lines, k, people.x[i], people.y[i]) >= lines[k, 7]:
-            return True
-    return False
+    """Whether person i is out, and as far beyond the exit as that exit lets people walk on."""
+    k = people.out[i] - 1
+    return k >= 0 and _beyond(lines, k, people.x[i], people.y[i]) >= lines[k, 7]
 
 
 @njit(cache=True, error_model="numpy")

@@ -72,16 +72,34 @@ def _exponential(p, gap):
     return max(p.A * exp(-gap / p.B) - p.cut, 0.0)
 
 
-def cut_at(p, tolerance: float):
-    """The same social law, ending where it has fallen to `tolerance` (N)."""
-    return p._replace(cut=tolerance) if isinstance(p, Exponential) else p
+@generic
+def cut_at(p, tolerance):
+    """The same law, ending without a jump where it has fallen to `tolerance` (N)."""
 
 
-def reach(p) -> float:
-    """Largest gap at which a social law acts, m; 0 if it is absent."""
-    if not isinstance(p, Exponential):
-        return 0.0
-    return p.B * math.log(p.A / p.cut) if 0.0 < p.cut < p.A else (0.0 if p.cut else math.inf)
+@cut_at.law(Absent)
+def _nothing_to_cut(p, tolerance):
+    return p
+
+
+@cut_at.law(Exponential)
+def _cut_exponential(p, tolerance):
+    return p._replace(cut=tolerance)
+
+
+@generic
+def reach(p):
+    """Largest gap at which a law that has been cut acts, m."""
+
+
+@reach.law(Absent)
+def _reaches_nobody(p):
+    return 0.0
+
+
+@reach.law(Exponential)
+def _reach_of_exponential(p):
+    return p.B * math.log(p.A / p.cut) if p.cut < p.A else 0.0
 
 
 # --- Vision: who in front weighs more -------------------------------------------------------------------
@@ -323,14 +341,14 @@ def _turns(p):
     return True
 
 
-KINDS = {  # a model's field -> the generic that its parameters must have a law of
-    "drive": drive,
-    "social": social,
-    "vision": vision,
-    "normal": normal,
-    "sliding": sliding,
-    "wall_social": social,
-    "wall_normal": normal,
-    "wall_sliding": sliding,
-    "rotation": turns,
+KINDS = {  # a model's field -> the generics that its parameters must have a law of
+    "drive": (drive,),
+    "social": (social, cut_at, reach),
+    "vision": (vision, looks),
+    "normal": (normal, normal_stiffness),
+    "sliding": (sliding, remembers, sliding_stiffness),
+    "wall_social": (social, cut_at, reach),
+    "wall_normal": (normal, normal_stiffness),
+    "wall_sliding": (sliding, remembers, sliding_stiffness),
+    "rotation": (turns,),
 }

@@ -1,5 +1,6 @@
 """Models: named sets of laws."""
 
+import math
 from typing import Any, NamedTuple
 
 from engine import laws
@@ -88,6 +89,7 @@ def lin_dem(
 
 
 POSITIVE = {"tau", "B", "k_n", "k_t", "v_0", "shape"}  # parameters that a law divides by, or needs to exist
+RANGES = {"phi": (-1.0, 1.0), "lam": (0.0, 1.0)}  # beyond, people in the back would attract; all others: 0 or more
 
 
 def checked(model: Model) -> Model:
@@ -102,16 +104,20 @@ def checked(model: Model) -> Model:
 
 
 def _checked(kind: str, law: Any) -> Any:
-    known = laws.KINDS[kind].laws
-    names = ", ".join(sorted(p.__name__ for p in known))
-    require(type(law) in known, kind, repr(law), "is not a law of this kind", f"choose one of {names}")
+    first, *companions = laws.KINDS[kind]
+    names = ", ".join(sorted(p.__name__ for p in first.laws))
+    require(type(law) in first.laws, kind, repr(law), "is not a law of this kind", f"choose one of {names}")
+    for other in companions:
+        remedy = f"register one with @{other.__name__}.law({type(law).__name__})"
+        require(type(law) in other.laws, kind, repr(law), f"has no law of {other.__name__}", remedy)
     for name, value in law._asdict().items():
-        least = "positive" if name in POSITIVE else "not negative"
-        _check_number(f"{kind} {name}", value, least)
+        _check_parameter(f"{kind} {name}", name, value)
     return type(law)(*map(float, law))
 
 
-def _check_number(thing: str, value: Any, least: str) -> None:
-    number = isinstance(value, int | float) or getattr(value, "ndim", None) == 0
-    inside = number and (0.0 < value < float("inf") or (value == 0.0 and least != "positive"))
-    require(inside, thing, value, f"must be finite and {least}", "give a number in its range")
+def _check_parameter(thing: str, name: str, value: Any) -> None:
+    low, high = RANGES.get(name, (0.0, math.inf))
+    number = (isinstance(value, int | float) or getattr(value, "ndim", None) == 0) and not isinstance(value, bool)
+    inside = number and math.isfinite(value) and low <= value <= high and (value > 0.0 or name not in POSITIVE)
+    wanted = "above 0" if name in POSITIVE else "of 0 or more" if high == math.inf else f"from {low:g} to {high:g}"
+    require(inside, thing, value, f"is not a finite number {wanted}", "give a number in its range")

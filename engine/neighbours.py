@@ -30,7 +30,7 @@ class People(NamedTuple):
     v_d: np.ndarray  # m/s
     listed_x: np.ndarray  # m, place when the lists were built
     listed_y: np.ndarray
-    out: np.ndarray  # 1 once the person has crossed an exit
+    out: np.ndarray  # number of the exit that the person has crossed, from 1; 0: inside
 
 
 class Near(NamedTuple):

@@ -32,6 +32,10 @@ def lin_room(
     A: float = 300.0,
     B: float = 0.05,
     phi: float = 0.3,
+    E: float = 5e6,
+    poisson: float = 0.25,
+    g_n: float = 0.8,
+    g_t: float = 0.8,
     mu: float = 0.5,
     tau: float = 0.5,
     reading: str = "RK",
@@ -53,6 +57,8 @@ def lin_room(
     seed : number of the run; places, radii and masses follow from it
     L : width of the exit, m
     A, B, phi : strength (N), range (m) and anisotropy of the social force (Eq. 2)
+    E, poisson : Young's modulus (Pa) and Poisson's ratio of the bodies
+    g_n, g_t : normal and tangential damping, 1/(m s)
     mu : friction coefficient
     tau : reaction time, s
     reading : what sliding does, see `models.lin_dem`
@@ -70,7 +76,7 @@ def lin_room(
     return Scenario(
         scene=square_room(size, L),
         crowd=Crowd.uniform(N, (0.0, size, 0.0, size), radius=(0.25, 0.35), mass=(60.0, 80.0), v_d=v_d),
-        model=models.lin_dem(reading, A=A, B=B, phi=phi, mu=mu, tau=tau, inertia=inertia),
+        model=models.lin_dem(reading, A, B, phi, E, poisson, g_n, g_t, mu, tau, inertia),
         numerics=Numerics(dt=dt, force_tolerance=force_tolerance),
         stopping=Stopping(patience=patience, time_limit=time_limit),
         record=Record(every=every, contacts=contacts),

@@ -33,7 +33,7 @@ class Numerics:
     ----------
     dt : time step, s
     force_tolerance : the social force ends, without a jump, where it has fallen to this, N
-    skin : how much farther than they reach pairs are listed, m (speed only; no result depends on it)
+    skin : how much farther than they reach pairs are listed, m (for speed; changes a run by rounding only)
     """
 
     dt: float = 1e-3
@@ -214,4 +214,4 @@ def _built(plain: Any) -> Any:
 
 
 def _laws() -> dict[str, type[NamedTuple]]:
-    return {p.__name__: p for kind in laws.KINDS.values() for p in kind.laws}
+    return {p.__name__: p for generics in laws.KINDS.values() for p in generics[0].laws}

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from engine.errors import require
 Point = tuple[float, float]
 Segment = tuple[float, float, float, float]  # x0, y0, x1, y1 in m
 
-STRAIGHT = 1e-9  # sine of the angle below which two wall pieces are one straight wall
+STRAIGHT = 1e-9  # of a wall's length, and m: how far beside a line a point may lie and still be on it
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,9 @@ class Scene:
 
     Attributes
     ----------
-    walls : wall segments (x0, y0, x1, y1), m. A wall in several collinear pieces acts as one wall.
+    walls : wall segments (x0, y0, x1, y1), m; pieces that touch on one line are joined into one wall.
+        Walls that meet act through the closest point of each, a common corner once. A person in a bend feels
+        both walls, so draw curves that people lean against from inside in few pieces.
     exits : the exits; none makes a closed box
 
     Raises
@@ -66,10 +68,10 @@ class Scene:
     exits: tuple[Exit, ...] = ()
 
     def __post_init__(self) -> None:
-        walls = tuple(_finite("wall", wall, 4) for wall in self.walls)
+        walls: list[Any] = [_finite("wall", wall, 4) for wall in self.walls]
         for wall in walls:
             require(math.dist(wall[:2], wall[2:]) > 0, "wall", wall, "has no length", "give two different ends")
-        object.__setattr__(self, "walls", walls)
+        object.__setattr__(self, "walls", tuple(_joined(walls)))
         object.__setattr__(self, "exits", tuple(self.exits))
 
     @classmethod
@@ -92,16 +94,15 @@ class SceneArrays(NamedTuple):
     """What the kernel sees of a scene."""
 
     walls: np.ndarray  # (walls, 5): x0, y0, unit vector along, length; m
-    joints: np.ndarray  # (walls, 2, n): walls that share the start, the end; -1 none
+    joints: np.ndarray  # (walls, 2, n): walls that its start, its end lies on; -1 none
     exits: np.ndarray  # (exits, 8): x0, y0, unit vector along, length, outward normal, walk_on; m
 
 
 def as_arrays(scene: Scene) -> SceneArrays:
-    """The scene for the kernel, collinear wall pieces joined."""
-    segments = _joined(list(scene.walls))
-    walls = np.array([(x0, y0, *_along(x0, y0, x1, y1)) for x0, y0, x1, y1 in segments]).reshape(-1, 5)
+    """The scene for the kernel."""
+    walls = np.array([(x0, y0, *_along(x0, y0, x1, y1)) for x0, y0, x1, y1 in scene.walls]).reshape(-1, 5)
     exits = np.array([_exit_row(e) for e in scene.exits]).reshape(-1, 8)
-    return SceneArrays(walls, _joints(segments), exits)
+    return SceneArrays(walls, _joints(scene.walls), exits)
 
 
 def _along(x0: float, y0: float, x1: float, y1: float) -> tuple[float, float, float]:
@@ -139,20 +140,22 @@ def _union(first: Segment, second: Segment) -> Segment | None:
     return x0 + s * ux, y0 + s * uy, x0 + e * ux, y0 + e * uy
 
 
-def _joints(segments: list[Segment]) -> np.ndarray:
-    """For each end of each wall the other walls that have an end there."""
-    ends = [((x0, y0), (x1, y1)) for x0, y0, x1, y1 in segments]
+def _joints(walls: tuple[Segment, ...]) -> np.ndarray:
+    """For each end of each wall the other walls that it lies on."""
     found = [
-        [[k for k, other in enumerate(ends) if k != w and _meets(point, other)] for point in ends[w]]
-        for w in range(len(ends))
+        [[k for k, other in enumerate(walls) if k != w and _lies_on(end, other)] for end in (wall[:2], wall[2:])]
+        for w, wall in enumerate(walls)
     ]
-    most = max((len(shared) for wall in found for shared in wall), default=0)
-    joints = np.full((len(ends), 2, max(most, 1)), -1, np.int64)
+    most = max((len(others) for wall in found for others in wall), default=0)
+    joints = np.full((len(walls), 2, max(most, 1)), -1, np.int64)
     for w, wall in enumerate(found):
-        for end, shared in enumerate(wall):
-            joints[w, end, : len(shared)] = shared
+        for end, others in enumerate(wall):
+            joints[w, end, : len(others)] = others
     return joints
 
 
-def _meets(point: Point, ends: tuple[Point, Point]) -> bool:
-    return any(math.dist(point, end) < 1e-9 for end in ends)
+def _lies_on(point: Point, wall: Segment) -> bool:
+    ux, uy, length = _along(*wall)
+    dx, dy = point[0] - wall[0], point[1] - wall[1]
+    along = min(max(dx * ux + dy * uy, 0.0), length)
+    return math.hypot(dx - along * ux, dy - along * uy) < STRAIGHT

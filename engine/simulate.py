@@ -8,13 +8,13 @@ import numpy as np
 
 from engine import integrate, laws
 from engine.crowd import Start
-from engine.integrate import Clock, Exits, Rules, advance
+from engine.integrate import Clock, Log, Rules, advance
 from engine.neighbours import Near, People, nobody_near
 from engine.scenario import Scenario
 from engine.scene import SceneArrays, as_arrays
 
 OUTCOMES = ("missing", "all_out", "blocked", "frozen", "time_limit", "unstable")  # their numbers are the kernel's
-PATIENCE_STEPS = 20_000  # at most between two looks at the world outside the kernel (Ctrl-C)
+LOOK_EVERY = 20_000  # at most between two looks at the world outside the kernel (Ctrl-C)
 
 
 @dataclass(frozen=True)
@@ -115,15 +115,15 @@ def simulate(scenario: Scenario) -> Run:
     scene = as_arrays(scenario.scene)
     start = scenario.crowd.draw(scenario.seed, scene.walls)
     people, model, rules = _people(scenario, start), _with_cut(scenario), _rules(scenario)
-    exits = _no_exits(scenario.crowd.N)
+    log = _empty_log(scenario.crowd.N)
     clock = Clock(-1, scenario.crowd.N, 0, 0, integrate.RUNNING, 0, 0.0, 0.0, -1)
     near, recorder = nobody_near(), _Recorder(scenario)
     for until in recorder.looks(rules):
-        near, clock = advance(model, scene, rules, people, near, exits, clock, until)
+        near, clock = advance(model, scene, rules, people, near, log, clock, until)
         recorder.look(scene, people, near, clock)
         if clock.outcome != integrate.RUNNING:
             break
-    return _run(scenario, start, exits, clock, recorder.samples())
+    return _run(scenario, start, log, clock, recorder.samples())
 
 
 def _people(scenario: Scenario, start: Start) -> People:
@@ -132,7 +132,7 @@ def _people(scenario: Scenario, start: Start) -> People:
     inertia = rotation.shape * start.mass * start.radius**2 if laws.turns(rotation) else np.full(N, math.inf)
     state: dict[str, np.ndarray] = {name: np.zeros(N) for name in People._fields}
     state |= {name: value.copy() for name, value in start._asdict().items()}
-    state |= {"who": np.arange(N), "out": np.zeros(N, np.uint8), "inertia": inertia}
+    state |= {"who": np.arange(N), "out": np.zeros(N, np.int64), "inertia": inertia}
     return People(**state | {"listed_x": np.full(N, np.nan), "listed_y": np.full(N, np.nan)})  # nowhere: not listed
 
 
@@ -147,16 +147,16 @@ def _rules(scenario: Scenario) -> Rules:
     dt, model = scenario.numerics.dt, _with_cut(scenario)
     return Rules(
         dt=float(dt),
-        gap=laws.reach(model.social),
-        wall_gap=laws.reach(model.wall_social),
+        reach=laws.reach(model.social),
+        wall_reach=laws.reach(model.wall_social),
         skin=float(scenario.numerics.skin),
         last_step=math.ceil(scenario.stopping.time_limit / dt - 1e-9),
         patience=math.ceil(scenario.stopping.patience / dt - 1e-9),
     )
 
 
-def _no_exits(N: int) -> Exits:
-    return Exits(np.full(N, np.nan), np.full(N, -1), np.full(N, np.nan), np.full(N, np.nan), np.full(N, -1))
+def _empty_log(N: int) -> Log:
+    return Log(np.full(N, np.nan), np.full(N, -1), np.full(N, np.nan), np.full(N, np.nan), np.full(N, -1))
 
 
 class _Recorder:
@@ -173,9 +173,9 @@ class _Recorder:
         """Steps at which the kernel returns: every sample, and often enough to be interrupted."""
         if self.stride:
             yield 0
-        stride = self.stride or PATIENCE_STEPS
+        stride = self.stride or LOOK_EVERY
         for step in range(stride, rules.last_step + stride, stride):
-            yield from range(step - stride + PATIENCE_STEPS, step, PATIENCE_STEPS)
+            yield from range(step - stride + LOOK_EVERY, step, LOOK_EVERY)
             yield step
 
     def look(self, scene: SceneArrays, people: People, near: Near, clock: Clock) -> None:
@@ -220,9 +220,9 @@ def _contacts(scene: SceneArrays, people: People, near: Near) -> tuple[np.ndarra
     )
 
 
-def _run(scenario: Scenario, start: Start, exits: Exits, clock: Clock, samples: Samples | None) -> Run:
-    order = np.argsort(exits.time[: clock.N_out], kind="stable")
-    time, person, x, y, door = (values[order] for values in exits)
+def _run(scenario: Scenario, start: Start, log: Log, clock: Clock, samples: Samples | None) -> Run:
+    order = np.argsort(log.time[: clock.N_out], kind="stable")
+    time, person, x, y, door = (values[order] for values in log)
     outcome = OUTCOMES[clock.outcome]
     return Run(
         scenario=scenario,

@@ -34,7 +34,7 @@ def append_line(path: Path, line: str) -> None:
     """Add a line to a file that other processes may be adding to as well."""
     descriptor = os.open(path, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o666)
     try:
-        os.write(descriptor, f"{line}\n".encode())  # one call: lines of two writers never mix
+        os.write(descriptor, f"\n{line}\n".encode())  # one call, so that lines never mix; the first \n ends a torn one
         os.fsync(descriptor)
     finally:
         os.close(descriptor)

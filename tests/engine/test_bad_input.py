@@ -47,11 +47,17 @@ CASES = {
     "given radius negative": (lambda: Crowd.given(**PERSON | {"radius": -0.3}), "radius -0.3"),
     "given place nan": (lambda: Crowd.given(**PERSON | {"x": [NAN]}), "x nan"),
     "given lengths differ": (lambda: Crowd.given(**PERSON | {"mass": [70.0, 80.0]}), "mass of shape (2,)"),
+    "given one place twice": (
+        lambda: Crowd.given(**PERSON | {"x": [1.0, 1.0], "y": [2.0, 2.0]}),
+        "place (1.0, 2.0) is given to two persons",
+    ),
+    "phi beyond 1": (lambda: rooms.lin_room(phi=1.5), "vision phi 1.5"),
     "wall without length": (lambda: Scene(((1, 1, 1, 1),)), "wall (1.0, 1.0, 1.0, 1.0)"),
     "wall nan": (lambda: Scene(((1, 1, 1, NAN),)), "wall (1, 1, 1, nan)"),
     "exit outward along": (lambda: Exit((0, 0), (0, 1), (0, 1)), "exit outward"),
     "exit without width": (lambda: Exit((0, 0), (0, 0), (0, 1)), "exit width 0 m"),
     "a law of the wrong kind": (lambda: models.checked(Model(drive=laws.Hertz(1e6, 0))), "drive Hertz"),
+    "a law without its end": (lambda: models.checked(Model(social=laws.Hertz(1e6, 0))), "social Hertz"),
     "not a law": (lambda: models.checked(Model(vision=0.3)), "vision 0.3"),
 }
 

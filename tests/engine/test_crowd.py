@@ -39,9 +39,10 @@ def test_a_crowd_that_does_not_fit_is_refused_by_number():
 
 
 def test_bodies_places_and_motion_are_independent_streams():
-    """More persons leave the bodies of the first as they are; an initial speed moves nobody's place."""
-    few, many = (Crowd.uniform(N, (0, 15, 0, 15)).draw(1, NO_WALLS) for N in (50, 50))
-    assert (few.x == many.x).all()
+    """An initial speed moves nobody's place, wider bodies have the same masses, another seed other bodies."""
+    few = Crowd.uniform(50, (0, 15, 0, 15)).draw(1, NO_WALLS)
+    wide = Crowd.uniform(50, (0, 15, 0, 15), radius=(0.3, 0.4)).draw(1, NO_WALLS)
+    assert (wide.mass == few.mass).all()
     moving = Crowd.uniform(50, (0, 15, 0, 15), speed=(0.9, 1.1)).draw(1, NO_WALLS)
     assert (moving.x == few.x).all()
     assert np.hypot(moving.vx, moving.vy) == pytest.approx(1.0, abs=0.1)

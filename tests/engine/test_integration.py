@@ -119,6 +119,41 @@ def test_the_departed_go_on_pushing_as_far_as_the_exit_lets_them_walk():
     assert times[1][1] > times[0][1] + 0.01
 
 
+def test_who_leaves_by_one_exit_is_gone_only_beyond_that_exit():
+    """The east door's line runs on through the room's outside, where those from the north door still walk."""
+    walls = ((0, 0, 6, 0), (0, 0, 0, 6), (6, 0, 6, 2), (6, 3, 6, 6), (0, 6, 4.8, 6), (5.8, 6, 6, 6))
+    doors = (Exit((6, 2), (6, 3), (1, 0), 1.0), Exit((4.8, 6), (5.8, 6), (0, 1), 1.0))
+    crowd = Crowd.given([5.3], [5.5], 0.6, 0.0, 0.0, 0.3, 70.0, 1.0)
+    scenario = Scenario(Scene(walls, doors), crowd, models.lin_dem(), record=Record(every=0.01))
+    run = simulate(scenario)
+    assert run.exit_door.tolist() == [1]
+    assert run.exit_y == pytest.approx([6.0])
+
+
+def test_crossing_the_line_of_an_exit_beside_it_is_not_leaving():
+    """No walls here: persons pass the door's line left of it, and only the one in the door is out."""
+    scene = Scene((), (Exit((2.0, 1.0), (2.0, 2.0), (1.0, 0.0)),))
+    crowd = Crowd.given([1.5, 1.5], [0.5, 1.5], 1.0, 0.0, 0.0, 0.3, 70.0, 0.0)
+    run = simulate(Scenario(scene, crowd, Model(), stopping=Stopping(patience=2.0)))
+    assert run.exit_person.tolist() == [1]
+    assert run.outcome == "blocked"
+
+
+def test_nobody_takes_over_the_body_of_who_left_before():
+    """Radius, mass, desired speed and spin move with their person when the arrays close ranks."""
+    crowd = Crowd.given(
+        [5.6, 2.0, 2.0], [3.0, 1.5, 4.5], 0.0, 0.0, [0.0, 1.0, 2.0], [0.3, 0.25, 0.35], [70, 60, 80], [2.0, 0.5, 0.8]
+    )
+    scene = rooms.square_room(6.0, 1.0)
+    both = simulate(
+        Scenario(scene, crowd, models.lin_dem(), stopping=Stopping(time_limit=3.0), record=Record(every=1.0))
+    )
+    assert both.exit_person.tolist() == [0]
+    assert both.samples.spin[-1] == pytest.approx([np.nan, 1.0, 2.0], nan_ok=True)
+    speed = np.hypot(both.samples.vx[-1], both.samples.vy[-1])[1:]
+    assert speed == pytest.approx(np.array([0.5, 0.8]) * (1 - np.exp(-6.0)), rel=1e-3)
+
+
 def test_a_run_that_blows_up_ends_as_unstable_and_names_the_person():
     crowd = Crowd.given([1.0, 2.0], [1.0, 1.0], [0.0, 1e200], 0.0, 0.0, 0.3, 70.0, 0.0)
     run = simulate(Scenario(Scene(), crowd, Model(normal=laws.Hertz(1e6, 0.0))))

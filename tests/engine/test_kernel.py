@@ -13,6 +13,9 @@ from numba import njit
 
 from engine import cache, forces, models, rooms, simulate
 from engine.exponential import exp
+from engine.neighbours import nobody_near
+
+simulation = sys.modules["engine.simulate"]  # the name engine.simulate is the function
 
 SMALL = {"v_d": 2.0, "N": 12, "seed": 5, "size": 4.0}
 
@@ -33,8 +36,11 @@ def test_the_polynomial_exponential_is_within_1e13():
 
 @pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="looks for x86-64 vector registers")
 def test_the_pair_arithmetic_is_vectorised():
-    loop = njit(error_model="numpy")(forces._repel.py_func)
-    loop(models.lin_dem(), 100, np.ones(forces.ROWS * forces.BLOCK))
+    loop = njit(error_model="numpy")(forces._between_persons.py_func)
+    scenario = rooms.lin_room(**SMALL)
+    people = simulation._people(scenario, scenario.crowd.draw(5, np.empty((0, 5))))
+    scratch, touching = np.ones(forces.ROWS * forces.BLOCK), np.empty(forces.BLOCK + 1, np.uint32)
+    loop(models.lin_dem(), people, nobody_near(), 1e-3, scratch, touching)
     (assembly,) = loop.inspect_asm().values()
     for operation in ("vsqrtpd", "vdivpd", "vmulpd"):
         assert re.search(rf"{operation}\s.*(ymm|zmm)", assembly), operation

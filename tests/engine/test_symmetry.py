@@ -89,6 +89,17 @@ def test_a_corner_of_two_walls_pushes_once():
     assert at_edge.samples.x[-1] < 0.75
 
 
+def test_a_wall_that_ends_on_another_does_not_push_those_behind_it():
+    """The foot of a partition, felt from the other side of the wall that it stands on."""
+    model = models.lin_dem()._replace(drive=laws.Absent())
+    crowd = Crowd.given([2.0], [-0.35], 0.0, 0.0, 0.0, 0.3, 70.0, 1.0)
+    wall, partition = (0.0, 0.0, 4.0, 0.0), (2.0, 0.0, 2.0, 3.0)
+    numbers = Numerics(dt=1e-4), Stopping(time_limit=0.2), Record(every=0.05)
+    plain, foot = (simulate(Scenario(Scene(w), crowd, model, *numbers)) for w in ((wall,), (wall, partition)))
+    assert plain.samples.y[-1] < -0.36
+    assert foot.samples.y == pytest.approx(plain.samples.y, abs=1e-12)
+
+
 def test_isotropic_forces_between_persons_sum_to_zero():
     model = models.lin_dem()._replace(drive=laws.Absent(), vision=laws.Absent())
     run = simulate(replace(scenario(), scene=Scene(), model=model))

@@ -58,8 +58,8 @@ def test_a_grid_survives_its_text_form(grid: Grid) -> None:
         ({"dt": [0.1]}, "dt 0.1 s is beyond.*dt = 0.1"),
         ({"reading": ["RK", "Q"]}, "reading 'Q' is not known.*reading = Q"),
         ({"L": [1.0, 0.5]}, "exit width 0.5 m is narrower.*L = 0.5"),
-        ({"mu": [-1.0]}, "mu -1.0 must be finite and not negative.*mu = -1.0"),
-        ({"tau": [0.0]}, "tau 0.0 must be finite and positive.*tau = 0.0"),
+        ({"mu": [-1.0]}, "mu -1.0 is not a finite number of 0 or more.*mu = -1.0"),
+        ({"tau": [0.0]}, "tau 0.0 is not a finite number above 0.*tau = 0.0"),
     ],
 )
 def test_bad_input_is_one_line_that_names_it(keywords: dict, words: str) -> None:

@@ -16,7 +16,7 @@ from tests.sweep.tiny import TINY, run_files
 
 
 def manifest(store: Path) -> list[str]:
-    return [json.loads(line)["key"] for line in (store / "manifest.jsonl").read_text().splitlines()]
+    return [json.loads(line)["key"] for line in (store / "manifest.jsonl").read_text().splitlines() if line]
 
 
 def test_a_second_sweep_runs_nothing_and_says_so(grid: Grid, store: Path, capsys: pytest.CaptureFixture) -> None:
@@ -48,7 +48,8 @@ def test_a_file_that_the_manifest_does_not_vouch_for_is_run_again(grid: Grid, st
     truncated = store / "runs" / f"{lines[0]}.nc"
     truncated.write_bytes(files[truncated.name][:-1])
     kept = (store / "manifest.jsonl").read_text().splitlines()
-    (store / "manifest.jsonl").write_text("\n".join([*kept[:-1], kept[-1][:20]]))  # the last line torn by a crash
+    kept = [line for line in kept if line]
+    (store / "manifest.jsonl").write_text("\n".join([*kept[1:-1], kept[-1][:20]]))  # the last line torn by a crash
     assert set(Store(store).finished()) == set(lines[1:-1])
     sweep(grid, store, jobs=1)
     assert run_files(store) == files
