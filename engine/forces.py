@@ -29,41 +29,55 @@ def forces(model, scene, people, n, near, dt, scratch, touching):
     float
         Largest overlap, m.
     """
-    _driving(model, scene.exits, people, n)
+    _driving(model, scene.exits, people, n, scratch)
     overlap = _between_persons(model, people, near, dt, scratch, touching)
     return max(overlap, _at_walls(model, scene, people, near, dt))
 
 
 @njit(cache=True, error_model="numpy")
-def _driving(model, exits, people, n):
+def _driving(model, exits, people, n, s):
     """Start the sums with the driving force; the desired direction is that of the nearest exit."""
+    for first in range(0, n, BLOCK):
+        count = min(BLOCK, n - first)
+        _aim(exits, people, first, count, s)
+        for p in range(count):
+            people.ex[first + p] = s[3 * BLOCK + p]
+        for p in range(count):
+            people.ey[first + p] = s[4 * BLOCK + p]
     for i in range(n):
-        ex, ey = desired_direction(exits, people.x[i], people.y[i], people.radius[i], people.out[i])
-        people.ex[i], people.ey[i] = ex, ey
-        people.fx[i] = drive(model.drive, people.mass[i], people.v_d[i], ex, people.vx[i])
-        people.fy[i] = drive(model.drive, people.mass[i], people.v_d[i], ey, people.vy[i])
+        people.fx[i] = drive(model.drive, people.mass[i], people.v_d[i], people.ex[i], people.vx[i])
+    for i in range(n):
+        people.fy[i] = drive(model.drive, people.mass[i], people.v_d[i], people.ey[i], people.vy[i])
+    for i in range(n):
         people.torque[i] = 0.0
 
 
 @njit(cache=True, error_model="numpy")
-def desired_direction(exits, x, y, radius, out):
-    """Towards the nearest point of the nearest exit, its line shortened by the radius at both ends.
+def _aim(exits, people, first, count, s):
+    """Desired directions of a block of persons, to rows 3 and 4 of the scratch.
 
-    Straight out for those who have crossed an exit (`out`, from 1); no direction where there is no exit.
+    Towards the nearest point of the nearest exit, its line shortened by the radius at both ends; straight
+    out for those who have crossed an exit; no direction where there is no exit.
     """
-    if out > 0:
-        return exits[out - 1, 5], exits[out - 1, 6]
-    ex, ey, nearest = 0.0, 0.0, math.inf
+    for p in range(count):
+        s[p], s[BLOCK + p], s[2 * BLOCK + p] = people.x[first + p], people.y[first + p], people.radius[first + p]
+    for p in range(count):
+        s[3 * BLOCK + p], s[4 * BLOCK + p], s[5 * BLOCK + p] = 0.0, 0.0, math.inf
     for k in range(exits.shape[0]):
         x0, y0, ux, uy, length = exits[k, 0], exits[k, 1], exits[k, 2], exits[k, 3], exits[k, 4]
-        along = (x - x0) * ux + (y - y0) * uy
-        aim = min(max(along, min(radius, 0.5 * length)), max(length - radius, 0.5 * length))
-        dx, dy = x0 + aim * ux - x, y0 + aim * uy - y
-        distance = math.sqrt(dx * dx + dy * dy)
-        if distance < nearest:
-            nearest = distance
-            ex, ey = (dx / distance, dy / distance) if distance > 0.0 else (exits[k, 5], exits[k, 6])
-    return ex, ey
+        for p in range(count):  # arithmetic without a branch, that the compiler vectorises
+            x, y, radius = s[p], s[BLOCK + p], min(s[2 * BLOCK + p], 0.5 * length)
+            aim = min(max((x - x0) * ux + (y - y0) * uy, radius), length - radius)
+            dx, dy = x0 + aim * ux - x, y0 + aim * uy - y
+            distance = max(math.sqrt(dx * dx + dy * dy), 1e-300)  # no direction at the aim itself
+            nearer = distance < s[5 * BLOCK + p]
+            s[3 * BLOCK + p] = dx / distance if nearer else s[3 * BLOCK + p]
+            s[4 * BLOCK + p] = dy / distance if nearer else s[4 * BLOCK + p]
+            s[5 * BLOCK + p] = distance if nearer else s[5 * BLOCK + p]
+    for p in range(count):
+        k = people.out[first + p] - 1
+        if k >= 0:
+            s[3 * BLOCK + p], s[4 * BLOCK + p] = exits[k, 5], exits[k, 6]
 
 
 @njit(cache=True, error_model="numpy")
@@ -136,7 +150,8 @@ def _contacts(model, people, i, j, slip, count, dt, s, touching):
     for p in range(count):  # without a branch: most pairs do not touch
         touching[touches] = p
         touches += s[2 * BLOCK + p] < 0.0
-        if remembers(model.sliding):
+    if remembers(model.sliding):
+        for p in range(count):
             slip[p] = slip[p] if s[2 * BLOCK + p] < 0.0 else 0.0
     deepest = 0.0
     for t in range(touches):
@@ -166,61 +181,59 @@ def _contacts(model, people, i, j, slip, count, dt, s, touching):
 @njit(cache=True, error_model="numpy")
 def _at_walls(model, scene, people, near, dt):
     """Forces of the walls: bodies of infinite mass and radius, each acting through its closest point."""
+    walls, joints, slips = scene.walls, scene.joints, near.wall_slip
     deepest = 0.0
     for p in range(near.wall_i.size):
         i, w = near.wall_i[p], near.wall[p]
-        dx, dy, counts = _from_wall(scene, w, people.x[i], people.y[i])
+        x, y, radius = people.x[i], people.y[i], people.radius[i]
+        dx, dy, end = _from_segment(x, y, walls[w, 0], walls[w, 1], walls[w, 2], walls[w, 3], walls[w, 4])
+        if end >= 0 and joints[w, end, 0] >= 0 and not _counts(walls, joints, w, end, x, y, dx, dy):
+            slips[p] = 0.0
+            continue
         distance = math.sqrt(dx * dx + dy * dy)
         nx, ny = dx / distance, dy / distance
-        overlap = people.radius[i] - distance
-        if not counts:
-            near.wall_slip[p] = 0.0
-            continue
+        overlap = radius - distance
         F_n, F_t = social(model.wall_social, -overlap), 0.0
         if overlap > 0.0:
             deepest = max(deepest, overlap)
             v_n = people.vx[i] * nx + people.vy[i] * ny
             v_t = people.vy[i] * nx - people.vx[i] * ny
             if turns(model.rotation):
-                v_t -= people.radius[i] * people.spin[i]
-            pressing = normal(model.wall_normal, overlap, people.radius[i], people.mass[i], v_n)
-            slip = near.wall_slip[p] + v_t * dt
-            F_t, near.wall_slip[p] = sliding(
-                model.wall_sliding, overlap, people.radius[i], people.mass[i], v_t, pressing, slip
-            )
+                v_t -= radius * people.spin[i]
+            mass = people.mass[i]
+            pressing = normal(model.wall_normal, overlap, radius, mass, v_n)
+            F_t, slips[p] = sliding(model.wall_sliding, overlap, radius, mass, v_t, pressing, slips[p] + v_t * dt)
             F_n += pressing
-            people.torque[i] -= people.radius[i] * F_t
+            people.torque[i] -= radius * F_t
         else:
-            near.wall_slip[p] = 0.0
+            slips[p] = 0.0
         people.fx[i] += F_n * nx - F_t * ny
         people.fy[i] += F_n * ny + F_t * nx
     return deepest
 
 
-@njit(cache=True, error_model="numpy")
-def _from_wall(scene, w, x, y):
-    """From the wall's closest point to (x, y), and whether that point counts for this wall.
-
-    A corner that several walls share counts once, and only if it is the closest point of each of them.
-    """
-    dx, dy, end = _from_segment(scene.walls, w, x, y)
-    if end >= 0:
-        for k in range(scene.joints.shape[2]):
-            other = scene.joints[w, end, k]
-            if other < 0:
-                break
-            ox, oy, other_end = _from_segment(scene.walls, other, x, y)
-            if other_end < 0 or (ox - dx) ** 2 + (oy - dy) ** 2 > 1e-16 or other < w:
-                return dx, dy, False
-    return dx, dy, True
-
-
-@njit(cache=True, error_model="numpy")
-def _from_segment(walls, w, x, y):
+@njit(cache=True, error_model="numpy", inline="always")
+def _from_segment(x, y, x0, y0, ux, uy, length):
     """From the closest point of a segment to (x, y), and which end that point is (-1: neither)."""
-    dx, dy = x - walls[w, 0], y - walls[w, 1]
-    ux, uy, length = walls[w, 2], walls[w, 3], walls[w, 4]
-    along = dx * ux + dy * uy
+    along = (x - x0) * ux + (y - y0) * uy
     end = 0 if along <= 0.0 else (1 if along >= length else -1)
     along = min(max(along, 0.0), length)
-    return dx - along * ux, dy - along * uy, end
+    return x - x0 - along * ux, y - y0 - along * uy, end
+
+
+@njit(cache=True, error_model="numpy")
+def _counts(walls, joints, w, end, x, y, dx, dy):
+    """Whether the end of wall w, seen from (x, y) at (dx, dy), acts for w.
+
+    An end that lies on other walls counts once, and only if it is the closest point of each of them.
+    """
+    for k in range(joints.shape[2]):
+        other = joints[w, end, k]
+        if other < 0:
+            break
+        ox, oy, other_end = _from_segment(
+            x, y, walls[other, 0], walls[other, 1], walls[other, 2], walls[other, 3], walls[other, 4]
+        )
+        if other_end < 0 or other < w or (ox - dx) ** 2 + (oy - dy) ** 2 > 1e-16:
+            return False
+    return True

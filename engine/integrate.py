@@ -64,17 +64,19 @@ def advance(model, scene, rules, people, near, log, clock, until):
     while step < until and outcome == RUNNING:
         dt = rules.dt if step >= 0 else 0.0
         _kick(model, people, n, 0.5 * dt)
-        crossed, gone = _drift(scene.exits, people, n, dt, step, log, N_out)
+        crossed = _cross(scene.exits, people, n, dt, step, log, N_out)
+        _drift(people, n, dt)
         step += 1
         if crossed > 0:
             N_out += crossed
             last_out = step
-        if gone or _left_their_skin(people, n, rules.skin):
+        someone_walks_on = N_out > people.x.size - n
+        if (someone_walks_on and _gone(scene.exits, people, n)) or _left_their_skin(people, n, rules.skin):
             culprit = _first_nowhere(people, n)
             if culprit >= 0:
                 outcome = UNSTABLE
                 break
-            moved_to, n = _compacted(scene.exits, people, n)
+            moved_to, n = _compacted(people, n)
             near = rebuilt(people, n, scene.walls, near, moved_to, gap, wall_gap)
             rebuilds += 1
         overlap = forces(model, scene, people, n, near, dt, scratch, touching)
@@ -105,51 +107,52 @@ def _kick(model, people, n, time):
 
 
 @njit(cache=True, error_model="numpy")
-def _drift(lines, people, n, dt, step, log, N_out):
-    """Move everybody by dt; log who crosses an exit, at the time and place interpolated in the step.
+def _cross(lines, people, n, dt, step, log, N_out):
+    """Log who will cross an exit in this step, at the time and place interpolated in it; returns how many.
 
-    Returns
-    -------
-    int, bool
-        How many crossed, and whether anybody is now far enough out to leave the arrays.
+    No helper functions in this loop: a call with arrays counts references, which costs more than the work.
     """
-    crossed, gone = 0, False
-    for i in range(n):
-        x, y = people.x[i], people.y[i]
-        people.x[i] = x + dt * people.vx[i]
-        people.y[i] = y + dt * people.vy[i]
-        for k in range(lines.shape[0]):
-            before, after = _beyond(lines, k, x, y), _beyond(lines, k, people.x[i], people.y[i])
-            if before < 0.0 <= after and people.out[i] == 0:
+    x, y, vx, vy, out = people.x, people.y, people.vx, people.vy, people.out
+    crossed = 0
+    for k in range(lines.shape[0]):
+        x0, y0, ux, uy, length = lines[k, 0], lines[k, 1], lines[k, 2], lines[k, 3], lines[k, 4]
+        nx, ny = lines[k, 5], lines[k, 6]
+        for i in range(n):
+            before = (x[i] - x0) * nx + (y[i] - y0) * ny
+            after = (x[i] + dt * vx[i] - x0) * nx + (y[i] + dt * vy[i] - y0) * ny
+            if before < 0.0 <= after and out[i] == 0:
                 part = before / (before - after)
-                at_x, at_y = x + part * dt * people.vx[i], y + part * dt * people.vy[i]
-                if _within(lines, k, at_x, at_y):
+                at_x, at_y = x[i] + part * dt * vx[i], y[i] + part * dt * vy[i]
+                if 0.0 <= (at_x - x0) * ux + (at_y - y0) * uy <= length:
                     place = N_out + crossed
                     log.time[place], log.person[place] = (step + part) * dt, people.who[i]
                     log.x[place], log.y[place], log.door[place] = at_x, at_y, k
-                    people.out[i] = k + 1
+                    out[i] = k + 1
                     crossed += 1
-        gone |= _has_gone(lines, people, i)
-    return crossed, gone
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def _beyond(lines, k, x, y):
-    """Distance beyond the line of exit k, m."""
-    return (x - lines[k, 0]) * lines[k, 5] + (y - lines[k, 1]) * lines[k, 6]
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def _within(lines, k, x, y):
-    """Whether the point lies between the ends of exit k."""
-    return 0.0 <= (x - lines[k, 0]) * lines[k, 2] + (y - lines[k, 1]) * lines[k, 3] <= lines[k, 4]
+    return crossed
 
 
 @njit(cache=True, error_model="numpy")
-def _has_gone(lines, people, i):
-    """Whether person i is out, and as far beyond the exit as that exit lets people walk on."""
-    k = people.out[i] - 1
-    return k >= 0 and _beyond(lines, k, people.x[i], people.y[i]) >= lines[k, 7]
+def _drift(people, n, dt):
+    """Move everybody by dt."""
+    for i in range(n):
+        people.x[i] += dt * people.vx[i]
+    for i in range(n):
+        people.y[i] += dt * people.vy[i]
+
+
+@njit(cache=True, error_model="numpy")
+def _gone(lines, people, n):
+    """How many are out, and as far beyond their exit as it lets people walk on; they get `who` = -1."""
+    gone = 0
+    for i in range(n):
+        k = people.out[i] - 1
+        if k >= 0:
+            beyond = (people.x[i] - lines[k, 0]) * lines[k, 5] + (people.y[i] - lines[k, 1]) * lines[k, 6]
+            if beyond >= lines[k, 7]:
+                people.who[i] = -1
+                gone += 1
+    return gone
 
 
 @njit(cache=True, error_model="numpy")
@@ -172,11 +175,11 @@ def _first_nowhere(people, n):
 
 
 @njit(cache=True, error_model="numpy")
-def _compacted(lines, people, n):
-    """Close the gaps that the departed leave; returns everybody's new number (-1: gone) and how many stay."""
+def _compacted(people, n):
+    """Close the gaps that the gone leave; returns everybody's new number (-1: gone) and how many stay."""
     moved_to, stay = np.empty(n, np.int64), 0
     for i in range(n):
-        if _has_gone(lines, people, i):
+        if people.who[i] < 0:
             moved_to[i] = -1
             continue
         moved_to[i] = stay
