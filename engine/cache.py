@@ -8,6 +8,7 @@ edited comment or docstring costs no compilation.
 import ast
 import hashlib
 import os
+import tempfile
 from pathlib import Path
 
 import numba
@@ -19,8 +20,8 @@ FOLDERS_KEPT = 8
 def fingerprint(sources: Path = SOURCES) -> str:
     """Hash of what the package's sources mean: their code without comments and docstrings (16 hex digits)."""
     digest = hashlib.sha256()
-    for path in sorted(sources.glob("*.py")):
-        digest.update(path.name.encode())
+    for path in sorted(sources.rglob("*.py")):
+        digest.update(path.relative_to(sources).as_posix().encode())
         digest.update(ast.unparse(_without_docstrings(ast.parse(path.read_text("utf-8")))).encode())
     return digest.hexdigest()[:16]
 
@@ -35,19 +36,29 @@ def _without_docstrings(tree: ast.Module) -> ast.Module:
 def use_own_folder(mark: str) -> None:
     """Point numba's cache to a folder of this fingerprint; call before the first kernel is decorated.
 
-    The folder lies in `NUMBA_CACHE_DIR` if that is set, else in the user's cache folder. Where neither can
-    be written, numba's own choice stays.
+    The folder lies in `NUMBA_CACHE_DIR` if that is set, else in the user's cache folder, else in the system's
+    folder for temporary files.
     """
-    base = Path(os.environ.get("NUMBA_CACHE_DIR") or _user_cache() / "jamsweep" / "numba")
-    folder = base / f"engine-{mark}"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        os.utime(folder)
-        _forget_oldest(base)
-    except OSError:
-        return
-    if os.access(folder, os.W_OK):
+    own = Path(os.environ.get("NUMBA_CACHE_DIR") or _user_cache() / "jamsweep" / "numba")
+    for base in (own, Path(tempfile.gettempdir()) / f"jamsweep-numba-{os.getuid()}"):
+        folder = base / f"engine-{mark}"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            os.utime(folder)
+            tempfile.TemporaryFile(dir=folder).close()  # rights alone do not tell
+            _forget_oldest(base)
+            _forget_torn(folder)
+        except OSError:
+            continue
         numba.config.CACHE_DIR = str(folder)  # type: ignore[attr-defined]  # numba sets its options by name
+        return
+
+
+def _forget_torn(folder: Path) -> None:
+    """Remove files that a crash or a full disk left empty: numba fails on them."""
+    for path in folder.rglob("*.nb[ic]"):
+        if path.stat().st_size == 0:
+            path.unlink(missing_ok=True)
 
 
 def _user_cache() -> Path:

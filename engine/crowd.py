@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import njit
 
-from engine.errors import require
+from engine.errors import finite, require
 
 PERSONS, PLACEMENT, MOTION = 0, 1, 2  # independent random streams of one seed
 MAX_ROUNDS = 2000  # of placement: each round every person without a place tries a new one
@@ -113,8 +113,7 @@ class Crowd:
         require(
             isinstance(N, int | np.integer) and N > 0, "N", repr(N), "is not a whole number above 0", "give persons"
         )
-        box = tuple(map(float, area))
-        require(all(map(math.isfinite, box)), "area", area, "is not finite", "give x0, x1, y0, y1 in m")
+        box = finite("area", area, 4)
         require(box[1] > box[0] and box[3] > box[2], "area", area, "is empty", "give x0 < x1 and y0 < y1 in m")
         crowd = Uniform(
             int(N),
@@ -198,7 +197,8 @@ def _place(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Random sequential placement: rounds in which all who wait try one place each."""
     x0, x1, y0, y1 = area
-    N, size = radius.size, 2.0 * float(radius.max())
+    N = radius.size
+    size = max(2.0 * float(radius.max()), math.sqrt((x1 - x0) * (y1 - y0) / (4.0 * N + 16.0)))  # of a cell
     x, y = np.full(N, np.nan), np.full(N, np.nan)
     first = np.full((int((x1 - x0) / size) + 3, int((y1 - y0) / size) + 3), -1, np.int64)  # person in each cell
     following = np.full(N, -1, np.int64)  # the next person in the same cell

@@ -15,23 +15,24 @@ ROWS = 7  # of scratch: dx, dy, r_i + r_j, desired directions of i and j
 
 
 @njit(cache=True, error_model="numpy")
-def forces(model, scene, people, n, near, dt, scratch, touching):
+def forces(model, scene, people, n, near, stretch, lead, scratch, touching):
     """Sum all forces and torques on the first n persons into `people`.
 
     Parameters
     ----------
-    dt : time over which tangential springs stretch, s; 0 when the forces are only looked at
+    stretch : time over which tangential springs stretch, s
+    lead : time by which the springs are kept ahead of the slip that acts, s; see `engine.integrators`
     scratch : (ROWS * BLOCK,) float64
     touching : (BLOCK + 1,) uint32
 
     Returns
     -------
-    float
-        Largest overlap, m.
+    float, float
+        Largest overlap of two persons, of a person and a wall, m.
     """
     _driving(model, scene.exits, people, n, scratch)
-    overlap = _between_persons(model, people, near, dt, scratch, touching)
-    return max(overlap, _at_walls(model, scene, people, near, dt))
+    overlap = _between_persons(model, people, near, stretch, lead, scratch, touching)
+    return overlap, _at_walls(model, scene, people, near, stretch, lead)
 
 
 @njit(cache=True, error_model="numpy")
@@ -81,7 +82,7 @@ def _aim(exits, people, first, count, s):
 
 
 @njit(cache=True, error_model="numpy")
-def _between_persons(model, people, near, dt, s, touching):
+def _between_persons(model, people, near, stretch, lead, s, touching):
     deepest = 0.0
     for first in range(0, near.i.size, BLOCK):
         count = min(BLOCK, near.i.size - first)
@@ -89,7 +90,7 @@ def _between_persons(model, people, near, dt, s, touching):
         _gather(model, people, i, j, count, s)
         _repel(model, count, s)
         _scatter(people, i, j, count, s)
-        overlap = _contacts(model, people, i, j, near.slip[first : first + count], count, dt, s, touching)
+        overlap = _contacts(model, people, i, j, near.slip[first : first + count], count, stretch, lead, s, touching)
         deepest = max(deepest, overlap)
     return deepest
 
@@ -144,7 +145,7 @@ def _scatter(people, i, j, count, s):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _contacts(model, people, i, j, slip, count, dt, s, touching):
+def _contacts(model, people, i, j, slip, count, stretch, lead, s, touching):
     """Normal and tangential forces of the pairs in touch; a spring ends with its contact."""
     touches = 0
     for p in range(count):  # without a branch: most pairs do not touch
@@ -167,7 +168,9 @@ def _contacts(model, people, i, j, slip, count, dt, s, touching):
         if turns(model.rotation):
             v_t -= people.radius[a] * people.spin[a] + people.radius[b] * people.spin[b]
         F_n = normal(model.normal, overlap, radius, mass, v_n)
-        F_t, slip[p] = sliding(model.sliding, overlap, radius, mass, v_t, F_n, slip[p] + v_t * dt)
+        ahead = lead * v_t
+        F_t, stretched = sliding(model.sliding, overlap, radius, mass, v_t, F_n, slip[p] + v_t * stretch - ahead)
+        slip[p] = stretched + ahead
         fx, fy = F_n * nx - F_t * ny, F_n * ny + F_t * nx
         people.fx[a] += fx
         people.fy[a] += fy
@@ -179,7 +182,7 @@ def _contacts(model, people, i, j, slip, count, dt, s, touching):
 
 
 @njit(cache=True, error_model="numpy")
-def _at_walls(model, scene, people, near, dt):
+def _at_walls(model, scene, people, near, stretch, lead):
     """Forces of the walls: bodies of infinite mass and radius, each acting through its closest point."""
     walls, joints, slips = scene.walls, scene.joints, near.wall_slip
     deepest = 0.0
@@ -202,7 +205,9 @@ def _at_walls(model, scene, people, near, dt):
                 v_t -= radius * people.spin[i]
             mass = people.mass[i]
             pressing = normal(model.wall_normal, overlap, radius, mass, v_n)
-            F_t, slips[p] = sliding(model.wall_sliding, overlap, radius, mass, v_t, pressing, slips[p] + v_t * dt)
+            ahead, slip = lead * v_t, slips[p] + v_t * stretch
+            F_t, stretched = sliding(model.wall_sliding, overlap, radius, mass, v_t, pressing, slip - ahead)
+            slips[p] = stretched + ahead
             F_n += pressing
             people.torque[i] -= radius * F_t
         else:

@@ -1,11 +1,14 @@
-"""The time loop: velocity Verlet, exits, lists, and the rules that end a run."""
+"""The time loop: the integrator's step, exits, lists, and the rules that end a run."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 from engine.forces import BLOCK, ROWS, forces
+from engine.integrators import correct, lead, predict
+from engine.integrators.choice import kick
 from engine.laws import turns
 from engine.neighbours import rebuilt
 
@@ -20,6 +23,7 @@ class Rules(NamedTuple):
     reach: float  # m, largest gap of two persons that interact
     wall_reach: float  # m, of person and wall
     skin: float  # m
+    deepest: float  # m, the smallest radius: overlap at which bodies pass through each other
     last_step: int  # the time limit
     patience: int  # steps without anybody getting out after which the exits are blocked
 
@@ -49,23 +53,25 @@ class Log(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy")
-def advance(model, scene, rules, people, near, log, clock, until):
-    """Advance a run to step `until` or its end, by velocity Verlet (Lin et al. 2016, Eqs. 7-11).
+def advance(integrator, model, scene, rules, people, near, log, clock, until):
+    """Advance a run to step `until` or its end.
 
-    Forces are evaluated with the half-step velocities (sub-step c). `people` and `log` are changed in
-    place; the new lists and clock are returned. A run begins with a step of no length, which makes the
-    lists and the first forces.
+    `people` and `log` are changed in place; the new lists and clock are returned. A run begins with a step
+    of no length, which makes the lists and the first forces. It is unstable when somebody is nowhere, moves by
+    more than half the smallest radius in a step, or is pressed deeper than that radius into another, or than
+    three quarters of it into a wall: nobody can have passed through either before.
     """
-    step, n = clock.step, clock.inside
+    step, n, turning = clock.step, clock.inside, turns(model.rotation)
     N_out, last_out, outcome, rebuilds = clock.N_out, clock.last_out, clock.outcome, clock.rebuilds
     max_overlap, max_speed_squared, culprit = clock.max_overlap, clock.max_speed**2, clock.culprit
     scratch, touching = np.empty(ROWS * BLOCK), np.empty(BLOCK + 1, np.uint32)
     gap, wall_gap = rules.reach + rules.skin, rules.wall_reach + rules.skin
     while step < until and outcome == RUNNING:
         dt = rules.dt if step >= 0 else 0.0
-        _kick(model, people, n, 0.5 * dt)
+        kick(turning, people, n, 0.5 * dt)
         crossed = _cross(scene.exits, people, n, dt, step, log, N_out)
         _drift(people, n, dt)
+        predict(integrator, turning, people, n, dt)
         step += 1
         if crossed > 0:
             N_out += crossed
@@ -79,9 +85,17 @@ def advance(model, scene, rules, people, near, log, clock, until):
             moved_to, n = _compacted(people, n)
             near = rebuilt(people, n, scene.walls, near, moved_to, gap, wall_gap)
             rebuilds += 1
-        overlap = forces(model, scene, people, n, near, dt, scratch, touching)
-        max_overlap = max(max_overlap, overlap)
-        max_speed_squared = max(max_speed_squared, _kick(model, people, n, 0.5 * dt))
+        ahead = lead(integrator) * rules.dt
+        stretch = dt if step > 0 else ahead
+        overlap, at_wall = forces(model, scene, people, n, near, stretch, ahead, scratch, touching)
+        correct(integrator, turning, people, n, dt)
+        max_overlap = max(max_overlap, overlap, at_wall)
+        max_speed_squared = max(max_speed_squared, _fastest(people, n))
+        too_fast = dt * dt * max_speed_squared > 0.25 * rules.deepest**2
+        if too_fast or overlap > rules.deepest or at_wall > 0.75 * rules.deepest:
+            culprit = _most_moved(people, n, near)
+            outcome = UNSTABLE
+            break
         if N_out == people.x.size:
             outcome = ALL_OUT
         elif scene.exits.shape[0] > 0 and step - last_out >= rules.patience:
@@ -93,17 +107,30 @@ def advance(model, scene, rules, people, near, log, clock, until):
 
 
 @njit(cache=True, error_model="numpy")
-def _kick(model, people, n, time):
-    """Change the velocities by the forces over `time`; returns the largest squared speed."""
+def _fastest(people, n):
+    """Largest squared speed."""
     fastest = 0.0
     for i in range(n):
-        people.vx[i] += time * people.fx[i] / people.mass[i]
-        people.vy[i] += time * people.fy[i] / people.mass[i]
         fastest = max(fastest, people.vx[i] ** 2 + people.vy[i] ** 2)
-    if turns(model.rotation):
-        for i in range(n):
-            people.spin[i] += time * people.torque[i] / people.inertia[i]
     return fastest
+
+
+@njit(cache=True, error_model="numpy")
+def _most_moved(people, n, near):
+    """Who is pressed deepest, or fastest where nobody is pressed deeper than half the own radius."""
+    culprit, most = np.int64(0), 0.5
+    for p in range(near.i.size):
+        i, j = near.i[p], near.j[p]
+        apart = math.hypot(people.x[i] - people.x[j], people.y[i] - people.y[j])
+        depth = (people.radius[i] + people.radius[j] - apart) / min(people.radius[i], people.radius[j])
+        if depth > most:
+            culprit, most = np.int64(i), depth
+    if most == 0.5:
+        fastest = 0.0
+        for i in range(n):
+            if people.vx[i] ** 2 + people.vy[i] ** 2 > fastest:
+                culprit, fastest = np.int64(i), people.vx[i] ** 2 + people.vy[i] ** 2
+    return people.who[culprit]
 
 
 @njit(cache=True, error_model="numpy")
@@ -120,7 +147,7 @@ def _cross(lines, people, n, dt, step, log, N_out):
         for i in range(n):
             before = (x[i] - x0) * nx + (y[i] - y0) * ny
             after = (x[i] + dt * vx[i] - x0) * nx + (y[i] + dt * vy[i] - y0) * ny
-            if before < 0.0 <= after and out[i] == 0:
+            if before <= 0.0 < after and out[i] == 0:
                 part = before / (before - after)
                 at_x, at_y = x[i] + part * dt * vx[i], y[i] + part * dt * vy[i]
                 if 0.0 <= (at_x - x0) * ux + (at_y - y0) * uy <= length:
@@ -196,3 +223,5 @@ def _move(people, i, to):
     people.vx[to], people.vy[to], people.spin[to] = people.vx[i], people.vy[i], people.spin[i]
     people.radius[to], people.mass[to], people.inertia[to] = people.radius[i], people.mass[i], people.inertia[i]
     people.v_d[to] = people.v_d[i]
+    people.fx_before[to], people.fy_before[to] = people.fx_before[i], people.fy_before[i]
+    people.torque_before[to] = people.torque_before[i]

@@ -58,6 +58,21 @@ class Exponential(NamedTuple):
 
 
 @generic
+def drive_rate(p):
+    """Rate at which the drive takes velocity, 1/s."""
+
+
+@drive_rate.law(Absent)
+def _no_drive_rate(p):
+    return 0.0
+
+
+@drive_rate.law(Relaxation)
+def _relaxation_rate(p):
+    return 1.0 / p.tau
+
+
+@generic
 def social(p, gap):
     """Repulsion at a gap between two surfaces (negative in overlap), N."""
 
@@ -70,6 +85,21 @@ def _no_social(p, gap):
 @social.law(Exponential)
 def _exponential(p, gap):
     return max(p.A * exp(-gap / p.B) - p.cut, 0.0)
+
+
+@generic
+def social_stiffness(p):
+    """Change of the force with the gap where two surfaces meet, N/m."""
+
+
+@social_stiffness.law(Absent)
+def _no_social_stiffness(p):
+    return 0.0
+
+
+@social_stiffness.law(Exponential)
+def _exponential_stiffness(p):
+    return p.A / p.B
 
 
 @generic
@@ -187,6 +217,26 @@ def _hertz(p, overlap, radius, mass, v_n):
 @normal.law(Hooke)
 def _hooke(p, overlap, radius, mass, v_n):
     return p.k_n * overlap - p.g_n * v_n
+
+
+@generic
+def normal_damping(p, overlap, radius, mass):
+    """Rate at which damping takes velocity, 1/s."""
+
+
+@normal_damping.law(Absent)
+def _no_normal_damping(p, overlap, radius, mass):
+    return 0.0
+
+
+@normal_damping.law(Hertz)
+def _hertz_damping(p, overlap, radius, mass):
+    return p.g_n * math.sqrt(overlap * radius)
+
+
+@normal_damping.law(Hooke)
+def _hooke_damping(p, overlap, radius, mass):
+    return p.g_n / mass
 
 
 @generic
@@ -317,6 +367,21 @@ def _mindlin_stiffness(p, overlap, radius):
     return p.k_t * math.sqrt(overlap * radius)
 
 
+@generic
+def sliding_damping(p, overlap, radius):
+    """Rate at which the tangential damper takes slip velocity of bodies that do not turn, 1/s."""
+
+
+@sliding_damping.law(Absent, Kinetic, Coulomb)
+def _no_sliding_damping(p, overlap, radius):
+    return 0.0
+
+
+@sliding_damping.law(Mindlin, MindlinReset)
+def _mindlin_damping(p, overlap, radius):
+    return p.g_t * math.sqrt(overlap * radius)
+
+
 # --- Rotation about the vertical ------------------------------------------------------------------------
 
 
@@ -342,13 +407,13 @@ def _turns(p):
 
 
 KINDS = {  # a model's field -> the generics that its parameters must have a law of
-    "drive": (drive,),
-    "social": (social, cut_at, reach),
+    "drive": (drive, drive_rate),
+    "social": (social, social_stiffness, cut_at, reach),
     "vision": (vision, looks),
-    "normal": (normal, normal_stiffness),
-    "sliding": (sliding, remembers, sliding_stiffness),
-    "wall_social": (social, cut_at, reach),
-    "wall_normal": (normal, normal_stiffness),
-    "wall_sliding": (sliding, remembers, sliding_stiffness),
+    "normal": (normal, normal_stiffness, normal_damping),
+    "sliding": (sliding, remembers, sliding_stiffness, sliding_damping),
+    "wall_social": (social, social_stiffness, cut_at, reach),
+    "wall_normal": (normal, normal_stiffness, normal_damping),
+    "wall_sliding": (sliding, remembers, sliding_stiffness, sliding_damping),
     "rotation": (turns,),
 }

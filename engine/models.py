@@ -4,7 +4,7 @@ import math
 from typing import Any, NamedTuple
 
 from engine import laws
-from engine.errors import require
+from engine.errors import number, require
 from engine.laws import Absent, Cosine, Coulomb, Exponential, Hertz, Kinetic, Mindlin, MindlinReset, Relaxation, Turning
 
 
@@ -55,8 +55,11 @@ def lin_dem(
     BadInput
         If the reading or the inertia is none of these, or a parameter is out of its range.
     """
-    require(reading in READINGS, "reading", repr(reading), "is not known", f"choose one of {', '.join(READINGS)}")
-    require(inertia in INERTIA, "inertia", repr(inertia), "is not known", f"choose one of {', '.join(INERTIA)}")
+    for name, word, known in (("reading", reading, READINGS), ("inertia", inertia, tuple(INERTIA))):
+        good = isinstance(word, str) and word in known
+        require(good, name, repr(word), "is not known", f"choose one of {', '.join(known)}")
+    E, poisson = number("E", E, "give Young's modulus in Pa"), number("poisson", poisson, "give Poisson's ratio")
+    require(E > 0, "E", E, "is not above 0 Pa", "give Young's modulus")
     require(-1.0 < poisson < 1.0, "poisson", poisson, "is outside (-1, 1)", "give Poisson's ratio of the bodies")
     k_n = 2.0 * E / (3.0 * (1.0 + poisson) * (1.0 - poisson))
     k_t = 2.0 * E / ((1.0 + poisson) * (2.0 - poisson))
@@ -117,7 +120,7 @@ def _checked(kind: str, law: Any) -> Any:
 
 def _check_parameter(thing: str, name: str, value: Any) -> None:
     low, high = RANGES.get(name, (0.0, math.inf))
-    number = (isinstance(value, int | float) or getattr(value, "ndim", None) == 0) and not isinstance(value, bool)
-    inside = number and math.isfinite(value) and low <= value <= high and (value > 0.0 or name not in POSITIVE)
+    value = number(thing, value, "give a number in its range")
+    inside = low <= value <= high and (value > 0.0 or name not in POSITIVE)
     wanted = "above 0" if name in POSITIVE else "of 0 or more" if high == math.inf else f"from {low:g} to {high:g}"
     require(inside, thing, value, f"is not a finite number {wanted}", "give a number in its range")

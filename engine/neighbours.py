@@ -22,6 +22,9 @@ class People(NamedTuple):
     fx: np.ndarray  # N
     fy: np.ndarray  # N
     torque: np.ndarray  # N m
+    fx_before: np.ndarray  # N, forces of the step before, where the integrator needs them
+    fy_before: np.ndarray  # N
+    torque_before: np.ndarray  # N m
     ex: np.ndarray  # desired direction
     ey: np.ndarray
     radius: np.ndarray  # m

@@ -1,18 +1,17 @@
 """Rooms: the papers' scenes as functions of named parameters."""
 
-import math
-
 from engine import models
 from engine.crowd import Crowd
-from engine.errors import require
+from engine.errors import number, require
 from engine.scenario import Numerics, Record, Scenario, Stopping
 from engine.scene import Exit, Scene
 
 
 def square_room(size: float, L: float, walk_on: float = 0.0) -> Scene:
     """A square room [0, size]^2 with one exit of width L in the middle of its right wall, m."""
-    require(math.isfinite(L) and L > 0, "L", L, "is not a width above 0 m", "give the width of the exit")
-    require(math.isfinite(size) and size > L, "size", size, f"has no room for an exit of L = {L:g} m", "enlarge it")
+    L, size = number("L", L, "give the width of the exit"), number("size", size, "give the side of the room")
+    require(L > 0, "L", L, "is not a width above 0 m", "give the width of the exit")
+    require(size > L, "size", size, f"has no room for an exit of L = {L:g} m", "enlarge it")
     low, high = (size - L) / 2, (size + L) / 2
     walls = (
         (0.0, 0.0, size, 0.0),
@@ -43,6 +42,7 @@ def lin_room(
     size: float = 15.0,
     dt: float = 1e-3,
     force_tolerance: float = 1e-3,
+    integrator: str = "velocity_verlet",
     patience: float = 120.0,
     time_limit: float = 1000.0,
     every: float = 0.0,
@@ -64,7 +64,7 @@ def lin_room(
     reading : what sliding does, see `models.lin_dem`
     inertia : "sphere", "disc" or "none", see `models.lin_dem`
     size : side of the room, m
-    dt, force_tolerance : see `Numerics`
+    dt, force_tolerance, integrator : see `Numerics`
     patience, time_limit : see `Stopping`
     every, contacts : see `Record`
 
@@ -77,7 +77,7 @@ def lin_room(
         scene=square_room(size, L),
         crowd=Crowd.uniform(N, (0.0, size, 0.0, size), radius=(0.25, 0.35), mass=(60.0, 80.0), v_d=v_d),
         model=models.lin_dem(reading, A, B, phi, E, poisson, g_n, g_t, mu, tau, inertia),
-        numerics=Numerics(dt=dt, force_tolerance=force_tolerance),
+        numerics=Numerics(dt=dt, force_tolerance=force_tolerance, integrator=integrator),
         stopping=Stopping(patience=patience, time_limit=time_limit),
         record=Record(every=every, contacts=contacts),
         seed=seed,

@@ -9,20 +9,21 @@ import numpy as np
 
 from engine import crowd as crowds
 from engine import laws, models
-from engine.errors import require
+from engine.errors import number, require
+from engine.integrators import INTEGRATORS
 from engine.models import Model
 from engine.scene import Exit, Scene
 
+MOST_STEPS = 1e12
 ASSUMED_OVERLAP = 0.2  # of the smallest radius: what the step must be able to follow
 
 
 def _make_positive(part: Any, remedy: str) -> None:
     """Turn all fields of a frozen dataclass into floats above 0, so that 120 and 120.0 are one scenario."""
-    for field in fields(part):
-        value = getattr(part, field.name)
-        good = isinstance(value, int | float | np.number) and math.isfinite(value) and value > 0
-        require(bool(good), field.name, value, "is not finite and positive", remedy)
-        object.__setattr__(part, field.name, float(value))
+    for field in (field for field in fields(part) if field.type is float):
+        value = number(field.name, getattr(part, field.name), remedy)
+        require(value > 0, field.name, value, "is not finite and positive", remedy)
+        object.__setattr__(part, field.name, value)
 
 
 @dataclass(frozen=True)
@@ -33,15 +34,25 @@ class Numerics:
     ----------
     dt : time step, s
     force_tolerance : the social force ends, without a jump, where it has fallen to this, N
+    integrator : "velocity_verlet" (as the papers print it) or "predictor" (second order), see `engine.integrators`
     skin : how much farther than they reach pairs are listed, m (for speed; changes a run by rounding only)
     """
 
     dt: float = 1e-3
     force_tolerance: float = 1e-3
     skin: float = 0.12
+    integrator: str = "velocity_verlet"
 
     def __post_init__(self) -> None:
         _make_positive(self, "give a value above 0")
+        known = ", ".join(INTEGRATORS)
+        require(
+            self.integrator in INTEGRATORS,
+            "integrator",
+            repr(self.integrator),
+            "is not known",
+            f"choose one of {known}",
+        )
 
 
 @dataclass(frozen=True)
@@ -89,7 +100,7 @@ class Scenario:
     Raises
     ------
     BadInput
-        If an exit is narrower than the largest person, dt is beyond what the contacts' stiffness allows,
+        If an exit is narrower than the largest person, dt is beyond what the laws allow,
         the sampling interval is no multiple of dt, or any part is out of its range.
     """
 
@@ -102,7 +113,11 @@ class Scenario:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        whole = isinstance(self.seed, int | np.integer) and self.seed >= 0
+        for name, kind in PART_TYPES.items():
+            good = isinstance(getattr(self, name), kind)
+            wanted = getattr(kind, "__name__", "Crowd")
+            require(good, name, repr(getattr(self, name)), f"is no {wanted}", f"make one with {wanted}(...)")
+        whole = isinstance(self.seed, int | np.integer) and 0 <= self.seed < 2**63
         require(whole, "seed", repr(self.seed), "is not a whole number of 0 or more", "number the runs 0, 1, 2 ...")
         object.__setattr__(self, "seed", int(self.seed))
         object.__setattr__(self, "model", models.checked(self.model))
@@ -142,39 +157,52 @@ def _check_sampling(record: Record, numerics: Numerics) -> None:
 
 
 def _check_step(scenario: Scenario) -> None:
-    limit = step_limit(scenario)
-    require(
-        scenario.numerics.dt <= limit,
-        "dt",
-        f"{scenario.numerics.dt:g} s",
-        f"is beyond the {limit:.2g} s that the stiffness of the contacts allows",
-        "reduce dt or the stiffness, or make persons heavier",
+    limit, cause = step_limit(scenario)
+    dt, steps = scenario.numerics.dt, scenario.stopping.time_limit / scenario.numerics.dt
+    remedy = "reduce dt, or the strength of that law, or make persons heavier"
+    require(dt <= limit, "dt", f"{dt:g} s", f"is beyond the {limit:.2g} s that the {cause} allows", remedy)
+    remedy = "change one of them"
+    require(1 <= steps <= MOST_STEPS, "time_limit", f"of {steps:.3g} steps", f"is not 1 to {MOST_STEPS:.0e}", remedy)
+
+
+def step_limit(scenario: Scenario) -> tuple[float, str]:
+    """Longest stable time step, s, and what sets it.
+
+    For springs 2/omega of the stiffest mode of a triangular packing, omega^2 = 3 k/m of one pair, at an overlap
+    of a fifth of the smallest radius; the tangential spring also turns the bodies, and so acts on a smaller
+    mass. For dampers a third of 2/rate, since a person has up to six neighbours; for the drive tau.
+    """
+    springs, dampers, model = [0.0], [0.0], scenario.model
+    radius, mass = min(scenario.crowd.radius), min(scenario.crowd.mass)
+    overlap = ASSUMED_OVERLAP * radius
+    turning = 1.0 + (1.0 / model.rotation.shape if laws.turns(model.rotation) else 0.0)
+    for social, normal, sliding, r, m in (
+        (model.social, model.normal, model.sliding, radius / 2, mass / 2),
+        (model.wall_social, model.wall_normal, model.wall_sliding, radius, mass),
+    ):
+        springs.append((laws.social_stiffness(social) + laws.normal_stiffness(normal, overlap, r)) / m)
+        springs.append(laws.sliding_stiffness(sliding, overlap, r) * turning / m)
+        dampers.append(laws.normal_damping(normal, overlap, r, m))
+        dampers.append(laws.sliding_damping(sliding, overlap, r) * turning)
+    return min(
+        (_inverse(math.sqrt(3.0 * max(springs)) / 2.0), "stiffness of the contacts"),
+        (_inverse(1.5 * max(dampers)), "damping of the contacts"),
+        (_inverse(laws.drive_rate(model.drive)), "drive's tau"),
     )
 
 
-def step_limit(scenario: Scenario) -> float:
-    """Longest stable time step, s.
-
-    2/omega of the stiffest mode of a triangular packing, omega^2 = 3 k/m of one pair, at an overlap of a
-    fifth of the smallest radius, for the stiffer of the normal and the tangential spring (which also turns
-    the bodies, and so acts on a smaller mass).
-    """
-    radius, mass = _smallest(scenario.crowd)
-    overlap, model = ASSUMED_OVERLAP * radius, scenario.model
-    turning = 1.0 + (1.0 / model.rotation.shape if laws.turns(model.rotation) else 0.0)
-    rates = [0.0]
-    for normal, sliding, r, m in (
-        (model.normal, model.sliding, radius / 2, mass / 2),
-        (model.wall_normal, model.wall_sliding, radius, mass),
-    ):
-        rates.append(laws.normal_stiffness(normal, overlap, r) / m)
-        rates.append(laws.sliding_stiffness(sliding, overlap, r) * turning / m)
-    return 2.0 / math.sqrt(3.0 * max(rates)) if max(rates) > 0 else math.inf
+def _inverse(rate: float) -> float:
+    return 1.0 / rate if rate > 0.0 else math.inf
 
 
-def _smallest(crowd: crowds.Uniform | crowds.Given) -> tuple[float, float]:
-    return min(crowd.radius), min(crowd.mass)
-
+PART_TYPES: dict[str, Any] = {
+    "scene": Scene,
+    "crowd": crowds.Uniform | crowds.Given,
+    "model": Model,
+    "numerics": Numerics,
+    "stopping": Stopping,
+    "record": Record,
+}
 
 # --- Text form: dataclasses and laws as objects that name their type ------------------------------------
 

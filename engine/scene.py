@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from engine.errors import require
+from engine.errors import finite, require
 
 Point = tuple[float, float]
 Segment = tuple[float, float, float, float]  # x0, y0, x1, y1 in m
@@ -32,8 +32,8 @@ class Exit:
 
     def __post_init__(self) -> None:
         for name in ("start", "end", "outward"):
-            object.__setattr__(self, name, _finite(f"exit {name}", getattr(self, name), 2))
-        object.__setattr__(self, "walk_on", _finite("exit walk_on", (self.walk_on,), 1)[0])
+            object.__setattr__(self, name, finite(f"exit {name}", getattr(self, name), 2))
+        object.__setattr__(self, "walk_on", finite("exit walk_on", (self.walk_on,), 1)[0])
         require(self.walk_on >= 0, "exit walk_on", self.walk_on, "is negative", "give a distance of 0 m or more")
         require(self.width > 0, "exit width", f"{self.width:g} m", "is not positive", "give two different ends")
         along = np.subtract(self.end, self.start) / self.width
@@ -68,26 +68,18 @@ class Scene:
     exits: tuple[Exit, ...] = ()
 
     def __post_init__(self) -> None:
-        walls: list[Any] = [_finite("wall", wall, 4) for wall in self.walls]
+        walls: list[Any] = [finite("wall", wall, 4) for wall in self.walls]
         for wall in walls:
             require(math.dist(wall[:2], wall[2:]) > 0, "wall", wall, "has no length", "give two different ends")
         object.__setattr__(self, "walls", tuple(_joined(walls)))
+        for line in self.exits:
+            require(isinstance(line, Exit), "exit", repr(line), "is no Exit", "make one with Exit(start, end, outward)")
         object.__setattr__(self, "exits", tuple(self.exits))
 
     @classmethod
     def box(cls, width: float, height: float) -> "Scene":
         """A closed box [0, width] x [0, height], m."""
         return cls(((0, 0, width, 0), (width, 0, width, height), (width, height, 0, height), (0, height, 0, 0)))
-
-
-def _finite(thing: str, numbers: object, count: int) -> tuple[float, ...]:
-    try:
-        values = tuple(float(number) for number in numbers)  # type: ignore[attr-defined]  # that is what is tested
-    except (TypeError, ValueError):
-        values = ()
-    good = len(values) == count and all(map(math.isfinite, values))
-    require(good, thing, numbers, f"is not {count} finite number{'s' * (count > 1)}", "give them in m")
-    return values
 
 
 class SceneArrays(NamedTuple):
@@ -115,15 +107,18 @@ def _exit_row(e: Exit) -> tuple[float, ...]:
     return (*e.start, *_along(*e.start, *e.end), e.outward[0] / size, e.outward[1] / size, e.walk_on)
 
 
-def _joined(segments: list[Segment]) -> list[Segment]:
-    """Join pieces that touch or overlap on one line, as long as there are any."""
-    for a in range(len(segments)):
-        for b in range(a + 1, len(segments)):
-            union = _union(segments[a], segments[b])
+def _joined(pieces: list[Segment]) -> list[Segment]:
+    """Join pieces that touch or overlap on one line."""
+    walls: list[Segment] = []
+    for piece in pieces:
+        place = len(walls)
+        for k in range(len(walls) - 1, -1, -1):
+            union = _union(walls[k], piece)
             if union:
-                rest = [s for k, s in enumerate(segments) if k not in (a, b)]
-                return _joined([*rest[:a], union, *rest[a:]])
-    return segments
+                piece, place = union, k
+                del walls[k]
+        walls.insert(place, piece)
+    return walls
 
 
 def _union(first: Segment, second: Segment) -> Segment | None:

@@ -8,13 +8,17 @@ import numpy as np
 
 from engine import integrate, laws
 from engine.crowd import Start
+from engine.errors import require
 from engine.integrate import Clock, Log, Rules, advance
+from engine.integrators import INTEGRATORS
+from engine.interrupts import interrupts_held
 from engine.neighbours import Near, People, nobody_near
 from engine.scenario import Scenario
 from engine.scene import SceneArrays, as_arrays
 
 OUTCOMES = ("missing", "all_out", "blocked", "frozen", "time_limit", "unstable")  # their numbers are the kernel's
-LOOK_EVERY = 20_000  # at most between two looks at the world outside the kernel (Ctrl-C)
+PERSON_STEPS = 4_000_000  # at most between two looks at the world outside the kernel (some tenths of a second)
+DEEPEST_START = 0.5  # of the smallest radius: overlap that a given crowd may begin with
 
 
 @dataclass(frozen=True)
@@ -58,7 +62,7 @@ class Run:
     samples : the state along the run, if it was recorded
     max_overlap, max_speed : m, m/s
     steps, rebuilds : of the integration, of the neighbour lists
-    culprit : the person whose place is no number any more, or beyond 1000 km, if unstable; else -1
+    culprit : the person who was pressed or thrown through others, or is nowhere, if unstable; else -1
     """
 
     scenario: Scenario
@@ -94,8 +98,9 @@ class Run:
             "blocked": f"blocked: nobody got out during the last {self.scenario.stopping.patience:g} s of "
             f"{self.end_time:.1f} s; {self.N_out} of {self.N} persons were out",
             "frozen": f"frozen: at rest for good after {self.end_time:.1f} s, {self.N_out} of {self.N} out",
-            "time_limit": f"stopped at the time limit of {self.end_time:.1f} s, {self.N_out} of {self.N} out",
-            "unstable": f"unstable: person {self.culprit} was thrown out of the world after {self.end_time:.4f} s",
+            "time_limit": f"stopped at the time limit of {self.end_time:g} s, {self.N_out} of {self.N} out",
+            "unstable": f"unstable after {self.end_time:.4f} s: person {self.culprit} was pressed or thrown through "
+            f"others (overlap up to {self.max_overlap:.2g} m, speed up to {self.max_speed:.3g} m/s); shorten dt",
         }[self.outcome]
 
 
@@ -110,20 +115,36 @@ def simulate(scenario: Scenario) -> Run:
     Raises
     ------
     BadInput
-        If the crowd cannot be placed.
+        If the crowd cannot be placed, or a given one overlaps too deeply.
     """
     scene = as_arrays(scenario.scene)
     start = scenario.crowd.draw(scenario.seed, scene.walls)
     people, model, rules = _people(scenario, start), _with_cut(scenario), _rules(scenario)
+    integrator = INTEGRATORS[scenario.numerics.integrator]
     log = _empty_log(scenario.crowd.N)
     clock = Clock(-1, scenario.crowd.N, 0, 0, integrate.RUNNING, 0, 0.0, 0.0, -1)
     near, recorder = nobody_near(), _Recorder(scenario)
-    for until in recorder.looks(rules):
-        near, clock = advance(model, scene, rules, people, near, log, clock, until)
-        recorder.look(scene, people, near, clock)
-        if clock.outcome != integrate.RUNNING:
-            break
+    with interrupts_held() as raise_interrupt:
+        for until in recorder.looks(rules):
+            near, clock = advance(integrator, model, scene, rules, people, near, log, clock, until)
+            raise_interrupt()
+            if clock.step == 0:
+                _check_start(people, clock, rules)
+            recorder.look(scene, people, near, clock)
+            if clock.outcome != integrate.RUNNING:
+                break
     return _run(scenario, start, log, clock, recorder.samples())
+
+
+def _check_start(people: People, clock: Clock, rules: Rules) -> None:
+    """Refuse a crowd that the first forces would blow up."""
+    overlap, allowed = clock.max_overlap, DEEPEST_START * rules.deepest
+    here = f"is {overlap:.3g} m deep in another or in a wall at the start (allowed: {allowed:.3g} m)"
+    who = int(people.who[0]) if clock.culprit < 0 else clock.culprit
+    require(overlap <= allowed, "somebody (such as person", f"{who})", here, "move the persons apart")
+    lost = np.flatnonzero(~np.isfinite(people.fx[: clock.inside] + people.fy[: clock.inside]))
+    remedy = "move the person off the wall"
+    require(not lost.size, "person", int(lost[0]) if lost.size else "", "stands with the centre on a wall", remedy)
 
 
 def _people(scenario: Scenario, start: Start) -> People:
@@ -150,8 +171,9 @@ def _rules(scenario: Scenario) -> Rules:
         reach=laws.reach(model.social),
         wall_reach=laws.reach(model.wall_social),
         skin=float(scenario.numerics.skin),
-        last_step=math.ceil(scenario.stopping.time_limit / dt - 1e-9),
-        patience=math.ceil(scenario.stopping.patience / dt - 1e-9),
+        deepest=min(scenario.crowd.radius),
+        last_step=max(math.ceil(scenario.stopping.time_limit / dt - 1e-9), 1),
+        patience=max(math.ceil(scenario.stopping.patience / dt - 1e-9), 1),
     )
 
 
@@ -171,11 +193,11 @@ class _Recorder:
 
     def looks(self, rules: Rules) -> Any:
         """Steps at which the kernel returns: every sample, and often enough to be interrupted."""
-        if self.stride:
-            yield 0
-        stride = self.stride or LOOK_EVERY
+        yield 0
+        look_every = max(PERSON_STEPS // self.N, 1)
+        stride = self.stride or look_every
         for step in range(stride, rules.last_step + stride, stride):
-            yield from range(step - stride + LOOK_EVERY, step, LOOK_EVERY)
+            yield from range(step - stride + look_every, step, look_every)
             yield step
 
     def look(self, scene: SceneArrays, people: People, near: Near, clock: Clock) -> None:

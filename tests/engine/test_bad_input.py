@@ -5,11 +5,18 @@ from dataclasses import replace
 
 import pytest
 
-from engine import BadInput, Crowd, Exit, Model, Numerics, Record, Scenario, Scene, laws, models, rooms
+from engine import BadInput, Crowd, Exit, Model, Numerics, Record, Scenario, Scene, laws, models, rooms, simulate
 
 NAN, INF = math.nan, math.inf
 AREA = (0, 15, 0, 15)
 PERSON = {"x": [1.0], "y": [1.0], "vx": 0.0, "vy": 0.0, "spin": 0.0, "radius": 0.3, "mass": 70.0, "v_d": 1.0}
+
+
+def started(x, y):
+    """Begin a run of persons given at these places in a box."""
+    crowd = Crowd.given(x, y, 0.0, 0.0, 0.0, 0.3, 70.0, 0.0)
+    return simulate(Scenario(Scene.box(3.0, 3.0), crowd, models.lin_dem()))
+
 
 CASES = {
     "v_d nan": (lambda: rooms.lin_room(v_d=NAN), "v_d nan"),
@@ -33,6 +40,22 @@ CASES = {
     "dt too long": (lambda: rooms.lin_room(dt=0.02), "dt 0.02 s is beyond the"),
     "dt nan": (lambda: rooms.lin_room(dt=NAN), "dt nan"),
     "dt negative": (lambda: rooms.lin_room(dt=-1e-3), "dt -0.001"),
+    "dt beyond tau": (lambda: rooms.lin_room(tau=1e-4), "dt 0.001 s is beyond the 0.0001 s that the drive's tau"),
+    "dt beyond the damping": (lambda: rooms.lin_room(g_n=1e5), "dt 0.001 s is beyond the"),
+    "dt beyond the social force": (lambda: rooms.lin_room(A=1e6, B=1e-3), "dt 0.001 s is beyond the"),
+    "dt without end": (lambda: rooms.lin_room(dt=1e-300), "time_limit of 1e+303 steps"),
+    "no step at all": (lambda: rooms.lin_room(time_limit=1e-9), "time_limit of 1e-06 steps"),
+    "seed too large": (lambda: rooms.lin_room(seed=2**64), "seed 18446744073709551616"),
+    "L text": (lambda: rooms.lin_room(L="1"), "L 1 is not a finite number"),
+    "size none": (lambda: rooms.lin_room(size=None), "size None is not a finite number"),
+    "A beyond floats": (lambda: rooms.lin_room(A=10**400), "social A ... is not a finite number"),
+    "inertia a list": (lambda: rooms.lin_room(inertia=[]), "inertia []"),
+    "E nan": (lambda: rooms.lin_room(E=NAN), "E nan"),
+    "integrator unknown": (lambda: rooms.lin_room(integrator="euler"), "integrator 'euler'"),
+    "exits of something else": (lambda: Scene((), ("abc",)), "exit 'abc' is no Exit"),
+    "stopping of something else": (lambda: replace(rooms.lin_room(), stopping=3.0), "stopping 3.0 is no Stopping"),
+    "deep in another": (lambda: started([1.0, 1.1], [1.0, 1.0]), "somebody (such as person"),
+    "centre on a wall": (lambda: started([0.0], [1.0]), "somebody (such as person 0) is"),
     "force tolerance zero": (lambda: Numerics(force_tolerance=0.0), "force_tolerance 0"),
     "patience infinite": (lambda: rooms.lin_room(patience=INF), "patience inf"),
     "sampling negative": (lambda: rooms.lin_room(every=-1.0), "record every -1"),

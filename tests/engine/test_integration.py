@@ -16,11 +16,11 @@ def slope(scenario_at, steps, fine):
     return np.polyfit(np.log(steps), np.log(errors), 1)[0]
 
 
-def six_persons(model, dt, t_end=1.0):
+def six_persons(model, dt, t_end=1.0, integrator="velocity_verlet"):
     x, y = np.array([0, 0.7, 0.1, 0.8, 0.4, -0.5]), np.array([0, 0.1, 0.7, 0.8, 1.35, 0.4])
     crowd = Crowd.given(x, y, vx=[0.5, -0.5, 0.3, -0.4, 0.0, 0.6], vy=0.0, spin=0.0, radius=0.3, mass=70.0, v_d=1.0)
     exits = (Exit((9.0, 0.0), (9.0, 2.0), (1.0, 0.0)),)
-    numerics = Numerics(dt=dt, force_tolerance=1e-13)
+    numerics = Numerics(dt=dt, force_tolerance=1e-13, integrator=integrator)
     return Scenario(Scene((), exits), crowd, model, numerics, Stopping(time_limit=t_end), Record(every=t_end))
 
 
@@ -38,6 +38,44 @@ def test_velocity_verlet_as_printed_is_first_order_with_the_drive():
     """The forces are taken at the half-step velocity (sub-step c of the paper)."""
     driven = CONSERVATIVE._replace(drive=laws.Relaxation(0.5))
     assert 0.85 < slope(lambda dt: six_persons(driven, dt), STEPS, 1e-5) < 1.15
+
+
+def pressed_together(sliding, dt, integrator, t_end=0.04):
+    """Three persons in lasting contact, spinning: damping and friction act, and no contact begins or ends."""
+    model = Model(
+        drive=laws.Relaxation(0.5), normal=laws.Hertz(3.5e5, 50.0), sliding=sliding, rotation=laws.Turning(0.4)
+    )
+    crowd = Crowd.given(
+        [0.0, 0.5, 0.24], [0.0, 0.02, 0.43], [1, -1, 0], [0.3, -0.2, -1.0], [1.0, -2.0, 3.0], 0.3, [70, 75, 65], 0.0
+    )
+    numerics = Numerics(dt=dt, integrator=integrator)
+    return Scenario(Scene(), crowd, model, numerics, Stopping(time_limit=t_end), Record(every=t_end))
+
+
+FRICTION = {
+    "springs and dampers": laws.Mindlin(4.5e5, 50.0, 50.0),
+    "kinetic friction": laws.Kinetic(0.3, 0.5),
+    "no friction": laws.Absent(),
+}
+
+
+@pytest.mark.parametrize("sliding", FRICTION.values(), ids=FRICTION)
+def test_the_predictor_is_second_order_with_drag_damping_and_friction(sliding):
+    order = slope(lambda dt: pressed_together(sliding, dt, "predictor"), [1e-3, 5e-4, 2.5e-4, 1e-4], 5e-6)
+    assert 1.8 < order < 2.2
+
+
+@pytest.mark.parametrize("sliding", FRICTION.values(), ids=FRICTION)
+def test_velocity_verlet_as_printed_is_first_order_there(sliding):
+    order = slope(lambda dt: pressed_together(sliding, dt, "velocity_verlet"), [1e-3, 5e-4, 2.5e-4, 1e-4], 5e-6)
+    assert 0.8 < order < 1.25
+
+
+@pytest.mark.parametrize("integrator", ["velocity_verlet", "predictor"])
+def test_every_integrator_empties_the_papers_room_in_about_the_same_time(integrator):
+    run = simulate(rooms.lin_room(v_d=1.0, N=60, seed=4, integrator=integrator))
+    assert run.outcome == "all_out"
+    assert 50.0 < run.end_time < 90.0
 
 
 def alone(v_d, length, dt=1e-3, **changes):
@@ -159,3 +197,29 @@ def test_a_run_that_blows_up_ends_as_unstable_and_names_the_person():
     run = simulate(Scenario(Scene(), crowd, Model(normal=laws.Hertz(1e6, 0.0))))
     assert (run.outcome, run.culprit) == ("unstable", 1)
     assert "person 1" in str(run)
+
+
+def test_a_body_that_would_jump_through_another_ends_the_run_as_unstable():
+    """At 400 m/s relative speed 0.4 m are covered in a step, more than a radius."""
+    crowd = Crowd.given([0.0, 10.1], [0.0, 0.0], [200.0, -200.0], 0.0, 0.0, 0.3, 70.0, 0.0)
+    run = simulate(Scenario(Scene(), crowd, Model(normal=laws.Hertz(3.5e6, 0.0)), stopping=Stopping(time_limit=1.0)))
+    assert run.outcome == "unstable"
+
+
+@pytest.mark.parametrize("target", ["wall", "person"])
+def test_a_body_pressed_deeper_than_its_radius_ends_the_run_as_unstable(target):
+    """At 60 m/s the bodies of the paper cannot stop a person within a radius."""
+    other = ([2.0], [1.0], [0.0]) if target == "person" else ([], [], [])
+    crowd = Crowd.given([1.0, *other[0]], [1.0, *other[1]], [60.0, *other[2]], 0.0, 0.0, 0.3, 70.0, 0.0)
+    model = models.lin_dem()._replace(drive=laws.Absent())
+    run = simulate(Scenario(Scene(((2.5, 0.0, 2.5, 2.0),)), crowd, model, stopping=Stopping(time_limit=1.0)))
+    assert run.outcome == "unstable"
+    assert "pressed or thrown through others" in str(run)
+
+
+def test_who_starts_on_the_line_of_an_exit_is_counted():
+    scene = rooms.square_room(6.0, 1.0)
+    crowd = Crowd.given([6.0], [3.0], 0.01, 0.0, 0.0, 0.3, 70.0, 1.0)
+    run = simulate(Scenario(scene, crowd, models.lin_dem()))
+    assert run.outcome == "all_out"
+    assert run.end_time < 0.01

@@ -40,7 +40,7 @@ def test_the_pair_arithmetic_is_vectorised():
     scenario = rooms.lin_room(**SMALL)
     people = simulation._people(scenario, scenario.crowd.draw(5, np.empty((0, 5))))
     scratch, touching = np.ones(forces.ROWS * forces.BLOCK), np.empty(forces.BLOCK + 1, np.uint32)
-    loop(models.lin_dem(), people, nobody_near(), 1e-3, scratch, touching)
+    loop(models.lin_dem(), people, nobody_near(), 1e-3, 0.0, scratch, touching)
     (assembly,) = loop.inspect_asm().values()
     for operation in ("vsqrtpd", "vdivpd", "vmulpd"):
         assert re.search(rf"{operation}\s.*(ymm|zmm)", assembly), operation

@@ -8,11 +8,11 @@ from engine.rooms import square_room
 from tests.engine.reference import Reference
 
 
-def crush(reading, N=24, dt=2e-4, t_end=0.5):
+def crush(reading, N=24, dt=2e-4, t_end=0.5, size=6.0):
     """A crowd pressed against the exit wall and into the corner, so that persons and walls touch."""
     rng = np.random.default_rng(7)
     column, row = np.divmod(np.arange(N), 4)
-    x, y = 5.65 - 0.64 * column, 1.9 + 0.66 * row + 0.1 * (column % 2)
+    x, y = size - 0.35 - 0.64 * column, size / 2 - 1.1 + 0.66 * row + 0.1 * (column % 2)
     crowd = Crowd.given(
         x=x + rng.uniform(-0.01, 0.01, N),
         y=y + rng.uniform(-0.01, 0.01, N),
@@ -25,7 +25,7 @@ def crush(reading, N=24, dt=2e-4, t_end=0.5):
     )
     numerics = Numerics(dt=dt, force_tolerance=1e-12)
     stop = Stopping(time_limit=t_end)
-    return Scenario(square_room(6.0, 1.0), crowd, models.lin_dem(reading), numerics, stop, Record(every=0.01))
+    return Scenario(square_room(size, 1.0), crowd, models.lin_dem(reading), numerics, stop, Record(every=0.01))
 
 
 @pytest.mark.parametrize("reading", ["RK", "W", "WR"])
@@ -64,7 +64,7 @@ def test_the_skin_changes_speed_and_not_the_run(skin):
 
 def test_more_pairs_than_a_block_holds_are_all_computed():
     """120 persons have more than two blocks of 512 pairs in reach of each other."""
-    scenario = crush("W", N=120, t_end=0.05)
+    scenario = crush("W", N=120, t_end=0.05, size=20.0)
     reference = Reference(scenario)
     run = simulate(scenario)
     for _ in range(round(run.samples.time[-1] / scenario.numerics.dt)):

@@ -1,0 +1,36 @@
+"""What an integrator must say, and how velocities are changed by forces."""
+
+from typing import Any
+
+from numba import njit
+
+from engine.dispatch import generic
+
+INTEGRATORS: dict[str, Any] = {}  # by the name that `Numerics.integrator` gives
+
+
+@generic
+def predict(integrator, turning, people, n, dt):
+    """Bring the half-step velocities to the time at which the forces are taken."""
+
+
+@generic
+def correct(integrator, turning, people, n, dt):
+    """Bring the velocities to the end of the step, with the new forces."""
+
+
+@generic
+def lead(integrator):
+    """Part of a step by which springs are kept ahead of the slip that acts (0 or 1/2)."""
+
+
+@njit(cache=True, error_model="numpy")
+def kick(turning, people, n, time):
+    """Change the velocities by the forces over `time`."""
+    for i in range(n):
+        people.vx[i] += time * people.fx[i] / people.mass[i]
+    for i in range(n):
+        people.vy[i] += time * people.fy[i] / people.mass[i]
+    if turning:
+        for i in range(n):
+            people.spin[i] += time * people.torque[i] / people.inertia[i]

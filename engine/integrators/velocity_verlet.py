@@ -1,0 +1,24 @@
+"""Velocity Verlet as Lin et al. (2016) print it: forces at the half-step velocity (Eqs. 9-11, sub-step c)."""
+
+from typing import NamedTuple
+
+from engine.integrators.choice import correct, kick, lead, predict
+
+
+class VelocityVerlet(NamedTuple):
+    """Second order where forces do not depend on velocity, first order where they do."""
+
+
+@predict.law(VelocityVerlet)
+def _as_they_are(integrator, turning, people, n, dt):
+    pass
+
+
+@correct.law(VelocityVerlet)
+def _second_half(integrator, turning, people, n, dt):
+    kick(turning, people, n, 0.5 * dt)
+
+
+@lead.law(VelocityVerlet)
+def _no_lead(integrator):
+    return 0.0
