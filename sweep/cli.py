@@ -147,7 +147,10 @@ def gather(store: Path, output: Path | None) -> None:
 def _grid_of(store: Store) -> Grid:
     remedy = "name the folder of a sweep"
     require(store.grid.is_file(), "store", f"'{store.path}'", "holds no sweep", remedy)
-    return Grid.from_json(store.grid.read_text("utf-8"))
+    try:
+        return Grid.from_json(store.grid.read_text("utf-8"))
+    except (ValueError, KeyError, TypeError):  # of JSON, of UTF-8, or no grid; BadInput says itself what is wrong
+        raise DamagedFile(f"grid '{store.grid}' is damaged: sweep again, which writes it anew") from None
 
 
 @cli.command()

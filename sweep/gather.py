@@ -3,6 +3,7 @@
 import hashlib
 import json
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -46,10 +47,12 @@ def gather(grid: Grid, store: Path | str | Store) -> xr.Dataset:
     finished = store.finished()
     keys = [schema.run_key(grid.scenario(point)) for point in grid.points()]
     content = _content(grid, keys, finished)
-    if content != _content_of(store.dataset):
-        rows = [_facts(store, key) if key in finished else None for key in keys]
-        ds = _dataset(grid, rows).assign_attrs(content=content)
-        replace_durably(store.dataset, lambda path: _write(ds, path))
+    if content == _content_of(store.dataset):
+        with suppress(DamagedFile):  # it can be made again
+            return open_results(store.path)
+    rows = [_facts(store, key) if key in finished else None for key in keys]
+    ds = _dataset(grid, rows).assign_attrs(content=content)
+    replace_durably(store.dataset, lambda path: _write(ds, path))
     return open_results(store.path)
 
 

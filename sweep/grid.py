@@ -4,6 +4,7 @@ import inspect
 import itertools
 import json
 import math
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from types import MappingProxyType
 from typing import Any, get_type_hints
@@ -89,7 +90,10 @@ class Grid:
         """
         parameters = {**self.constants, **point}
         try:
-            return self.room(**parameters)
+            scenario = self.room(**parameters)
+            made = isinstance(scenario, Scenario)
+            require(made, "room", self.name, f"returns {type(scenario).__name__}", "return a Scenario")
+            return scenario
         except BadInput as error:
             raise BadInput(f"{error} (in {self.name} with {named(parameters)})") from None
 
@@ -149,7 +153,7 @@ def _axis(name: str, given: Any, kind: type | None) -> tuple[Scalar, ...]:
         "makes a grid of zero runs",
         "give at least one value",
     )
-    repeated = [value for k, value in enumerate(values) if value in values[:k]]
+    repeated = [value for value, times in Counter(values).items() if times > 1]
     require(not repeated, f"axis {name}", f"with {repeated[:1]} twice", "repeats a value", "name each value once")
     return values
 

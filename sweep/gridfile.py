@@ -24,6 +24,7 @@ from sweep.grid import Grid
 
 PARTS = ("room", "store", "axes", "constants")
 SPAN = ("first", "last", "step")
+MOST_VALUES = 100_000
 
 
 def read_gridfile(path: Path) -> tuple[Grid, str]:
@@ -85,7 +86,11 @@ def _span(name: str, given: dict[str, Any]) -> list[Any]:
     remedy = "give { first = , last = , step = }, with a step above 0"
     require(complete, f"axis {name}", given, "is not a span", remedy)
     first, last, step = (given[part] for part in SPAN)
-    values = first + step * np.arange(int((last - first) / step + 1e-9) + 1)
+    count = (last - first) / step + 1.0 + 1e-9
+    fits = 1.0 <= count <= MOST_VALUES
+    zero = "makes a grid of zero runs" if count < 1.0 else f"has more than {MOST_VALUES} values"
+    require(fits, f"axis {name}", given, zero, "give a last that is not below first and not too far")
+    values = first + step * np.arange(int(count))
     return (values if whole else np.round(values, 12)).tolist()  # 1.0, not 1.0000000000000002
 
 

@@ -51,7 +51,9 @@ def _room_command(name: str, room: Room) -> click.Command:
 
 
 def _run_once(scenario: Scenario, output: Path | None) -> None:
-    if output:
+    if output is not None:
+        named = output.name != "" and output.name.isprintable()
+        require(named, "output", repr(str(output)), "is not the name of a file", "name the netCDF file to write")
         require_writable(output.absolute().parent, "output folder")
     result = simulate(scenario)
     click.echo(str(result))

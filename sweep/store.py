@@ -42,7 +42,9 @@ class Store:
     """
 
     def __init__(self, path: "Path | str | Store") -> None:
-        self.path: Path = path.path if isinstance(path, Store) else Path(path)
+        named = isinstance(path, Store | Path) or (isinstance(path, str) and path != "" and "\0" not in path)
+        require(named, "store", repr(path), "is not the name of a folder", "name a folder, or one to be made")
+        self.path: Path = path.path if isinstance(path, Store) else Path(path).expanduser()
         folder = self.path.is_dir() or not self.path.exists()
         require(folder, "store", f"'{self.path}'", "is not a folder", "name a folder, or one to be made")
         self.runs, self.failed = self.path / "runs", self.path / "failed"
@@ -108,9 +110,10 @@ class Store:
 
 def _entry(line: str) -> Entry | None:
     try:
-        return Entry(**json.loads(line))
+        entry = Entry(**json.loads(line))
     except (ValueError, TypeError):  # torn by a crash: its run does not count
         return None
+    return entry if isinstance(entry.key, str) else None
 
 
 def _size(path: Path) -> int:

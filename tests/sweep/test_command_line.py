@@ -119,6 +119,9 @@ def test_bad_input_is_one_line_and_exit_code_2(arguments: list, words: str, caps
         ("[axes]\nseed = 3\n", "axis seed 3 is not a list"),
         ("[axes]\nseed = []\n", "makes a grid of zero runs"),
         ("[axes]\nseed = { first = 3, last = 0, step = 1 }\n", "makes a grid of zero runs"),
+        ("[axes]\nseed = { first = 0, last = -1, step = 1 }\n", "makes a grid of zero runs"),
+        ("[axes]\nv_d = { first = 1.0, last = 0.5, step = 1.0 }\n", "makes a grid of zero runs"),
+        ("[axes]\nv_d = { first = 1.0, last = 1e300, step = 1e-3 }\n", "has more than 100000 values"),
         ("[axes]\nseed = { first = 0, last = 3 }\n", "is not a span"),
         ("[axes]\nseed = { first = 0, last = 3, step = 0 }\n", "is not a span"),
         ("[axes]\nwidth = [1.0]\n", "'width' is not a keyword of lin_room"),
@@ -153,6 +156,20 @@ def test_a_store_that_is_a_file_or_cannot_be_made_is_refused(tmp_path: Path, cap
     path.write_text('room = "lin_room"\nstore = "/proc/results"\n')
     assert jamsweep("sweep", path) == 2
     refused(capsys, "cannot be written to")
+
+
+def test_an_output_without_a_name_is_refused_before_the_run(capsys: pytest.CaptureFixture) -> None:
+    assert jamsweep("run", "lin_room", *SMALL, "-o", "") == 2
+    assert "is not the name of a file" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("torn", ["", "{", "[]", "{}"])
+def test_a_damaged_grid_of_a_store_is_one_line(tmp_path: Path, torn: str, capsys: pytest.CaptureFixture) -> None:
+    (tmp_path / "grid.json").write_text(torn)
+    assert jamsweep("status", tmp_path) == 1
+    said = capsys.readouterr().err
+    assert "is damaged: sweep again" in said
+    assert "Traceback" not in said
 
 
 def test_the_module_is_a_command_with_version_and_help() -> None:

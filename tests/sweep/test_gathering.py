@@ -100,6 +100,24 @@ def test_a_store_without_results_is_named(tmp_path: Path) -> None:
         open_results(tmp_path / "nowhere")
 
 
+def test_a_damaged_dataset_is_made_again_from_its_runs(grid: Grid, store: Path) -> None:
+    whole = sweep(grid, store, jobs=1)
+    path = store / "dataset.nc"
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2 :] = bytes(len(content) - len(content) // 2)
+    path.write_bytes(content)
+    xr.testing.assert_identical(sweep(grid, store, jobs=1), whole)
+
+
+def test_a_room_that_makes_no_scenario_is_refused() -> None:
+    with pytest.raises(BadInput, match="returns int: return a Scenario"):
+        Grid(_no_room, size=[1, 2])
+
+
+def _no_room(size: int = 1) -> int:
+    return size
+
+
 def test_a_damaged_dataset_is_named(tmp_path: Path) -> None:
     (tmp_path / "dataset.nc").write_bytes(b"no netCDF")
     with pytest.raises(DamagedFile, match=r"dataset.nc' is damaged"):

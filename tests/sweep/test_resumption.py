@@ -48,8 +48,11 @@ def test_a_file_that_the_manifest_does_not_vouch_for_is_run_again(grid: Grid, st
     truncated = store / "runs" / f"{lines[0]}.nc"
     truncated.write_bytes(files[truncated.name][:-1])
     kept = (store / "manifest.jsonl").read_text().splitlines()
-    kept = [line for line in kept if line]
-    (store / "manifest.jsonl").write_text("\n".join([*kept[1:-1], kept[-1][:20]]))  # the last line torn by a crash
+    kept = [*(line for line in kept if line), '{"key": [1], "size": 2}']
+    kept.insert(0, kept.pop())
+    (store / "manifest.jsonl").write_text(
+        "\n".join([kept[0], *kept[2:-1], kept[-1][:20]])
+    )  # the last line torn by a crash
     assert set(Store(store).finished()) == set(lines[1:-1])
     sweep(grid, store, jobs=1)
     assert run_files(store) == files
