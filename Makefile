@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
 
-.PHONY: help setup test lint constraints clean
+.PHONY: help setup bench test lint constraints clean
 .DEFAULT_GOAL := help
 
 help:  ## this list
@@ -31,6 +31,9 @@ $(READY): pyproject.toml constraints.txt
 
 study-%: $(READY)  ## reproduce a figure: make study-fig10 [QUICK=1] [JOBS=2]
 	@$(BIN)/jamsweep study $* --jobs $(JOBS) $(if $(QUICK),--quick)
+
+bench: $(READY)  ## this engine beside its peers: make bench [QUICK=1]; pip install '.[bench]' brings them
+	@$(BIN)/python -m studies.bench $(if $(QUICK),--quick) $(if $(DOCS),--docs)
 
 test: $(READY)  ## all tests
 	@$(BIN)/python -m pytest

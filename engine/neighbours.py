@@ -86,24 +86,28 @@ def _pairs(people, n, gap):
         largest = max(largest, radius[i])
     size = max(2.0 * largest + gap, math.sqrt((x1 - x0) * (y1 - y0) / (4.0 * n + 16.0)))  # no more cells than useful
     columns, rows = int((x1 - x0) / size) + 1, int((y1 - y0) / size) + 1
-    first, following = np.full(columns * rows, -1), np.empty(n, np.int64)  # of the persons in a cell
-    for i in range(n - 1, -1, -1):
-        cell = int((x[i] - x0) / size) * rows + int((y[i] - y0) / size)
-        following[i], first[cell] = first[cell], i
+    cell, start = np.empty(n, np.int64), np.zeros(columns * rows + 2, np.int64)
+    for i in range(n):
+        cell[i] = int((x[i] - x0) / size) * rows + int((y[i] - y0) / size)
+        start[cell[i] + 2] += 1
+    for c in range(columns * rows):
+        start[c + 2] += start[c + 1]
+    who, near_x, near_y, near_r = np.empty(n, np.int64), np.empty(n), np.empty(n), np.empty(n)  # sorted by cell
+    for i in range(n):
+        k = start[cell[i] + 1]
+        start[cell[i] + 1] += 1  # in the end, cell c holds start[c] to start[c + 1]
+        who[k], near_x[k], near_y[k], near_r[k] = i, x[i], y[i], radius[i] + gap
     found_i, found_j, count = np.empty(8 * n, np.uint32), np.empty(8 * n, np.uint32), 0
     for i in range(n):
-        column, row = int((x[i] - x0) / size), int((y[i] - y0) / size)
+        column, row = cell[i] // rows, cell[i] % rows
         for c in range(max(column - 1, 0), min(column + 2, columns)):
-            for cell in range(c * rows + max(row - 1, 0), c * rows + min(row + 2, rows)):
-                j = first[cell]
-                while j >= 0:
-                    widest = radius[i] + radius[j] + gap
-                    if j > i and (x[i] - x[j]) ** 2 + (y[i] - y[j]) ** 2 < widest * widest:
-                        if count == found_i.size:
-                            found_i, found_j = _doubled(found_i), _doubled(found_j)
-                        found_i[count], found_j[count] = i, j
-                        count += 1
-                    j = following[j]
+            begin, end = start[c * rows + max(row - 1, 0)], start[c * rows + min(row + 1, rows - 1) + 1]
+            while count + end - begin > found_i.size:
+                found_i, found_j = _doubled(found_i), _doubled(found_j)
+            for k in range(begin, end):  # without a branch: half of them would be guessed wrong
+                dx, dy, widest = x[i] - near_x[k], y[i] - near_y[k], radius[i] + near_r[k]
+                found_i[count], found_j[count] = i, who[k]
+                count += (who[k] > i) & (dx * dx + dy * dy < widest * widest)
     return found_i[:count], found_j[:count]
 
 
@@ -111,10 +115,11 @@ def _pairs(people, n, gap):
 def _wall_pairs(people, n, walls, gap):
     found_i, found_wall, count = np.empty(n, np.uint32), np.empty(n, np.uint32), 0
     for i in range(n):
+        x, y, widest = people.x[i], people.y[i], people.radius[i] + gap
         for w in range(walls.shape[0]):
-            dx, dy = people.x[i] - walls[w, 0], people.y[i] - walls[w, 1]
-            s = min(max(dx * walls[w, 2] + dy * walls[w, 3], 0.0), walls[w, 4])
-            if math.hypot(dx - s * walls[w, 2], dy - s * walls[w, 3]) < people.radius[i] + gap:
+            dx, dy, ux, uy = x - walls[w, 0], y - walls[w, 1], walls[w, 2], walls[w, 3]
+            s = min(max(dx * ux + dy * uy, 0.0), walls[w, 4])
+            if (dx - s * ux) ** 2 + (dy - s * uy) ** 2 < widest * widest:
                 if count == found_i.size:
                     found_i, found_wall = _doubled(found_i), _doubled(found_wall)
                 found_i[count], found_wall[count] = i, w
