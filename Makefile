@@ -32,7 +32,7 @@ $(READY): pyproject.toml constraints.txt
 study-%: $(READY)  ## reproduce a figure: make study-fig10 [QUICK=1] [JOBS=2]
 	@$(BIN)/jamsweep study $* --jobs $(JOBS) $(if $(QUICK),--quick)
 
-bench: $(READY)  ## this engine beside its peers: make bench [QUICK=1]; pip install '.[bench]' brings them
+bench: $(READY)  ## this engine beside its peers: make bench [QUICK=1]; $(BIN)/pip install -e '.[bench]' brings them
 	@$(BIN)/python -m studies.bench $(if $(QUICK),--quick) $(if $(DOCS),--docs)
 
 test: $(READY)  ## all tests

@@ -43,20 +43,6 @@ def _relaxation(p, mass, v_d, e, v):
     return mass * (v_d * e - v) / p.tau
 
 
-# --- Social force: keeping a distance -------------------------------------------------------------------
-
-
-class Exponential(NamedTuple):
-    """A exp(-gap/B), going on in overlap (Lin et al. 2016, Eq. 2; Helbing et al. 2000).
-
-    `cut` is taken off, so that the force ends without a jump at the gap where it has fallen to `cut`.
-    """
-
-    A: float  # N
-    B: float  # m
-    cut: float = 0.0  # N
-
-
 @generic
 def drive_rate(p):
     """Rate at which the drive takes velocity, 1/s."""
@@ -70,6 +56,20 @@ def _no_drive_rate(p):
 @drive_rate.law(Relaxation)
 def _relaxation_rate(p):
     return 1.0 / p.tau
+
+
+# --- Social force: keeping a distance -------------------------------------------------------------------
+
+
+class Exponential(NamedTuple):
+    """A exp(-gap/B), going on in overlap (Lin et al. 2016, Eq. 2; Helbing et al. 2000).
+
+    `cut` is taken off, so that the force ends without a jump at the gap where it has fallen to `cut`.
+    """
+
+    A: float  # N
+    B: float  # m
+    cut: float = 0.0  # N
 
 
 @generic

@@ -18,9 +18,12 @@ FOLDER = Path("results/fig10")
 GRID = Grid(rooms.lin_room, v_d=[0.6, 0.8, 1.0, 1.2, 1.4, 1.6, 1.8, 2.0], N=[100, 200, 300], seed=range(10))
 QUICK = Grid(rooms.lin_room, v_d=[0.6, 1.0, 1.4, 1.8], N=[100, 200], seed=range(3))
 TOLERANCE = 0.2  # of a published clearance time
+THINNED = "\n\nA thinned grid of three seeds: it shows that all works; README.md has the verdicts of the full study."
+LEAST_RUNS = 5  # out of a cell, for an interval to be drawn
 TELLING = 0.5  # m/s, width of an interval that still tells something
 WIDE_ENOUGH = 1e-9  # m/s, for comparing axis values
 BOUNDARIES = (("transition_from", "transition"), ("phase_separation_from", "phase_separation"))
+PALE = 0.45
 STATE_COLOURS = {"smooth": figures.GREEN, "transition": figures.BLUE, "phase_separation": figures.ORANGE}
 
 
@@ -34,6 +37,7 @@ def measure(ds: xr.Dataset) -> xr.Dataset:
     return xr.Dataset(
         {
             "flow_of_run": flow.mean_flow,
+            "out": means.runs,
             **{name: means[name] for name in means if str(name).startswith("mean_flow")},
             **{name: times[name] for name in times if str(name).startswith("clearance_time")},
             **shares.data_vars,
@@ -80,10 +84,19 @@ def _runs(axis: Axes, column: xr.Dataset) -> None:
         spread = np.linspace(-0.035, 0.035, flows.size)
         axis.plot(v_d + spread, flows, ".", ms=3, color=figures.GREY, label="one run" if k == 0 else None)
         _blocked(axis, v_d, int(column.blocked[k]), int(column.runs[k]), first=k == 0)
-    mean, low, high = column.mean_flow, column.mean_flow_low, column.mean_flow_high
-    arms = np.nan_to_num(np.abs([mean - low, high - mean]))
+    mean = column.mean_flow
+    told = column.out >= LEAST_RUNS  # an interval of fewer runs reaches below zero
+    arms = np.abs([mean - column.mean_flow_low.where(told), column.mean_flow_high.where(told) - mean])
     axis.errorbar(
-        column.v_d, mean, arms, fmt="o-", ms=3, color="black", capsize=2, lw=1, label="mean of those out, 95 %"
+        column.v_d,
+        mean,
+        arms,
+        fmt="o-",
+        ms=3,
+        color="black",
+        capsize=2,
+        lw=1,
+        label="mean of those out, 95 % from 5 runs",
     )
 
 
@@ -100,11 +113,13 @@ def _states(axis: Axes, column: xr.Dataset) -> None:
     """Below the flows: a strip with the state of each cell, pale inside a boundary's interval, drawn above it."""
     for word, colour in STATE_COLOURS.items():
         axis.fill_between([], [], color=colour, lw=0, label=f"found: {word.replace('_', ' ')}")
+    axis.fill_between([], [], color=figures.GREY, alpha=PALE, lw=0, label="pale: not certain")
+    axis.plot([], [], "d-", ms=3, lw=1, color=figures.GREY, label="boundary, 95 %")
     words = column.state.attrs["flag_meanings"].split()
     half = float(np.diff(column.v_d).min()) / 2 if column.v_d.size > 1 else 0.1
     cells = zip(column.v_d.values, column.state.values, column.state_certain.values, strict=True)
     for v_d, state, certain in cells:
-        colour, depth = STATE_COLOURS.get(words[int(state)], "white"), 1.0 if certain else 0.45
+        colour, depth = STATE_COLOURS.get(words[int(state)], "white"), 1.0 if certain else PALE
         axis.fill_between([v_d - half, v_d + half], -0.25, -0.19, color=colour, alpha=depth, lw=0)
     for height, name, state in ((-0.14, *BOUNDARIES[0]), (-0.09, *BOUNDARIES[1])):
         at, low, high = (float(column[f"{name}{end}"]) for end in ("", "_low", "_high"))
@@ -151,7 +166,7 @@ def _cells(found: xr.Dataset, low: float, high: float, **where: int) -> xr.Datas
 
 def _clearance(found: xr.Dataset, v_d: float, published: float) -> Verdict:
     statement = f"clearance time, N = 200, v_d = {v_d} m/s"
-    said = f"{published:.0f} s +- {TOLERANCE:.0%}"
+    said = f"{published:.0f} s +- {100 * TOLERANCE:.0f} %"
     cell = _cells(found, v_d, v_d, N=200)
     if not cell.v_d.size:
         return Verdict(statement, said, "not in this grid", None)
@@ -216,7 +231,9 @@ def _blocks_from(found: xr.Dataset) -> Verdict:
     column = found.sel(N=200).sortby("v_d")
     some = column.v_d.values[column.blocked.values > 0]
     text = f"first blocked run at {some[0]:.1f} m/s" if some.size else "no run blocked"
-    return Verdict("blocking appears, N = 200", "1.4 to 1.8 m/s", text, bool(some.size and 1.4 <= some[0] <= 1.8))
+    low, high = paper.BLOCKING_APPEARS
+    holds = bool(some.size and low <= some[0] <= high)
+    return Verdict("blocking appears, N = 200", f"{low} to {high} m/s", text, holds)
 
 
 def _grows_with(found: xr.Dataset, axis: str) -> Verdict:
@@ -246,6 +263,6 @@ def main(quick: bool = False, jobs: int = 2) -> None:
     grid = QUICK if quick else GRID
     found = measure(sweep(grid, FOLDER, jobs=jobs)).assign_attrs(title=f"thinned: {len(QUICK)} runs" if quick else "")
     figures.draw(plot, found, FOLDER / "figure.png")
-    text = table(verdicts(found))
+    text = table(verdicts(found)) + (THINNED if quick else "")
     (FOLDER / "table.txt").write_text(text + "\n", "utf-8")
     print(text, f"\n{FOLDER / 'figure.png'}", sep="\n")

@@ -149,7 +149,9 @@ def _grid_of(store: Store) -> Grid:
     require(store.grid.is_file(), "store", f"'{store.path}'", "holds no sweep", remedy)
     try:
         return Grid.from_json(store.grid.read_text("utf-8"))
-    except (ValueError, KeyError, TypeError):  # of JSON, of UTF-8, or no grid; BadInput says itself what is wrong
+    except BadInput as error:  # of a room of one's own, which no name leads to
+        raise BadInput(f"{error} (sweep.open_results opens the dataset from Python)") from None
+    except (ValueError, KeyError, TypeError):  # of JSON, of UTF-8, or no grid
         raise DamagedFile(f"grid '{store.grid}' is damaged: sweep again, which writes it anew") from None
 
 

@@ -40,6 +40,7 @@ PHASE_SEPARATION_FROM = 1.6
 TRANSITION_FLOW = (0.7, 0.95)
 TRANSITION_MEAN_FLOW = 0.82
 PHASE_SEPARATION_FLOW = (0.0, 1.22)
+BLOCKING_APPEARS = (1.4, 1.8)  # "at 1.6 m/s or above" (abstract), give or take a cell of the scan
 
 # Text: when a run is stopped
 BLOCKED_AFTER = 120.0  # nobody got out for so long

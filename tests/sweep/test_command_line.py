@@ -172,6 +172,12 @@ def test_a_damaged_grid_of_a_store_is_one_line(tmp_path: Path, torn: str, capsys
     assert "Traceback" not in said
 
 
+def test_the_status_of_a_room_of_ones_own_says_so(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    (tmp_path / "grid.json").write_text('{"room": "mine:my_room", "axes": {"N": [3]}, "constants": {}}')
+    assert jamsweep("status", tmp_path) == 2
+    assert "room 'mine:my_room' is not known" in capsys.readouterr().err
+
+
 def test_the_module_is_a_command_with_version_and_help() -> None:
     for argument, word in (("--version", "engine"), ("--help", "jamsweep sweep grid.toml"), ("-h", "status")):
         command = [sys.executable, "-m", "sweep.cli", argument]
