@@ -120,7 +120,8 @@ def with_counts(
     """Assemble a mean, its two limits and its two counts, named and described after `da`."""
     name, units = str(da.name or "value"), da.attrs.get("units", "1")
     what = da.attrs.get("long_name", name)
-    texts = (f"mean {what}", f"{what}: lower limit", f"{what}: upper limit")
+    mean = what if what.startswith("mean ") else f"mean {what}"
+    texts = (mean, f"{what}: lower limit", f"{what}: upper limit")
     names = (name, f"{name}_low", f"{name}_high")
     level = [{}, {"confidence": confidence}, {"confidence": confidence}]
     variables = {n: described(f, units, text, **a) for n, f, text, a in zip(names, found, texts, level, strict=True)}
