@@ -37,7 +37,7 @@ class Generic:
                 "law",
                 f"{law.__module__}.{law.__qualname__}",
                 "stands outside the package engine, whose sources tell stale kernels and runs from fresh ones",
-                "move it to engine/laws.py",
+                "move it into engine/laws",
             )
             self.laws.update(dict.fromkeys(parameters, law))
             return law

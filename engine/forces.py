@@ -8,6 +8,7 @@ import math
 
 from numba import njit
 
+from engine.integrators.choice import settles
 from engine.laws import drive, looks, normal, remembers, sliding, social, turns, vision
 
 BLOCK = 512  # pairs; a constant, so that the compiler sees that the scratch rows do not overlap
@@ -15,8 +16,10 @@ ROWS = 7  # of scratch: dx, dy, r_i + r_j, desired directions of i and j
 
 
 @njit(cache=True, error_model="numpy")
-def forces(model, scene, people, n, near, stretch, lead, scratch, touching):
+def forces(integrator, model, scene, people, n, near, touch, stretch, lead, scratch, touching):
     """Sum all forces and torques on the first n persons into `people`.
+
+    For an integrator that settles velocities itself: only the forces of position, and all contacts into `touch`.
 
     Parameters
     ----------
@@ -30,13 +33,14 @@ def forces(model, scene, people, n, near, stretch, lead, scratch, touching):
     float, float
         Largest overlap of two persons, of a person and a wall, m.
     """
-    _driving(model, scene.exits, people, n, scratch)
-    overlap = _between_persons(model, people, near, stretch, lead, scratch, touching)
-    return overlap, _at_walls(model, scene, people, near, stretch, lead)
+    touch.counts[:] = 0
+    _driving(integrator, model, scene.exits, people, n, scratch)
+    overlap = _between_persons(integrator, model, people, near, touch, stretch, lead, scratch, touching)
+    return overlap, _at_walls(integrator, model, scene, people, near, touch, stretch, lead)
 
 
 @njit(cache=True, error_model="numpy")
-def _driving(model, exits, people, n, s):
+def _driving(integrator, model, exits, people, n, s):
     """Start the sums with the driving force; the desired direction is that of the nearest exit."""
     for first in range(0, n, BLOCK):
         count = min(BLOCK, n - first)
@@ -45,10 +49,14 @@ def _driving(model, exits, people, n, s):
             people.ex[first + p] = s[3 * BLOCK + p]
         for p in range(count):
             people.ey[first + p] = s[4 * BLOCK + p]
-    for i in range(n):
-        people.fx[i] = drive(model.drive, people.mass[i], people.v_d[i], people.ex[i], people.vx[i])
-    for i in range(n):
-        people.fy[i] = drive(model.drive, people.mass[i], people.v_d[i], people.ey[i], people.vy[i])
+    if settles(integrator):
+        for i in range(n):
+            people.fx[i], people.fy[i] = 0.0, 0.0
+    else:
+        for i in range(n):
+            people.fx[i] = drive(model.drive, people.mass[i], people.v_d[i], people.ex[i], people.vx[i])
+        for i in range(n):
+            people.fy[i] = drive(model.drive, people.mass[i], people.v_d[i], people.ey[i], people.vy[i])
     for i in range(n):
         people.torque[i] = 0.0
 
@@ -58,7 +66,7 @@ def _aim(exits, people, first, count, s):
     """Desired directions of a block of persons, to rows 3 and 4 of the scratch.
 
     Towards the nearest point of the nearest exit, its line shortened by the radius at both ends; straight
-    out for those who have crossed an exit; no direction where there is no exit.
+    out for those who stand there or have crossed an exit; no direction where there is no exit.
     """
     for p in range(count):
         s[p], s[BLOCK + p], s[2 * BLOCK + p] = people.x[first + p], people.y[first + p], people.radius[first + p]
@@ -70,10 +78,13 @@ def _aim(exits, people, first, count, s):
             x, y, radius = s[p], s[BLOCK + p], min(s[2 * BLOCK + p], 0.5 * length)
             aim = min(max((x - x0) * ux + (y - y0) * uy, radius), length - radius)
             dx, dy = x0 + aim * ux - x, y0 + aim * uy - y
-            distance = max(math.sqrt(dx * dx + dy * dy), 1e-300)  # no direction at the aim itself
+            distance = math.sqrt(dx * dx + dy * dy)
+            there = distance < 1e-9  # at the aim itself: straight out
+            inverse = 1.0 / max(distance, 1e-9)
+            ex, ey = exits[k, 5] if there else dx * inverse, exits[k, 6] if there else dy * inverse
             nearer = distance < s[5 * BLOCK + p]
-            s[3 * BLOCK + p] = dx / distance if nearer else s[3 * BLOCK + p]
-            s[4 * BLOCK + p] = dy / distance if nearer else s[4 * BLOCK + p]
+            s[3 * BLOCK + p] = ex if nearer else s[3 * BLOCK + p]
+            s[4 * BLOCK + p] = ey if nearer else s[4 * BLOCK + p]
             s[5 * BLOCK + p] = distance if nearer else s[5 * BLOCK + p]
     for p in range(count):
         k = people.out[first + p] - 1
@@ -82,7 +93,7 @@ def _aim(exits, people, first, count, s):
 
 
 @njit(cache=True, error_model="numpy")
-def _between_persons(model, people, near, stretch, lead, s, touching):
+def _between_persons(integrator, model, people, near, touch, stretch, lead, s, touching):
     deepest = 0.0
     for first in range(0, near.i.size, BLOCK):
         count = min(BLOCK, near.i.size - first)
@@ -90,7 +101,8 @@ def _between_persons(model, people, near, stretch, lead, s, touching):
         _gather(model, people, i, j, count, s)
         _repel(model, count, s)
         _scatter(people, i, j, count, s)
-        overlap = _contacts(model, people, i, j, near.slip[first : first + count], count, stretch, lead, s, touching)
+        slip = near.slip[first : first + count]
+        overlap = _contacts(integrator, model, people, i, j, slip, first, touch, count, stretch, lead, s, touching)
         deepest = max(deepest, overlap)
     return deepest
 
@@ -116,7 +128,8 @@ def _repel(model, count, s):
     for p in range(count):
         dx, dy = s[p], s[BLOCK + p]
         distance = math.sqrt(dx * dx + dy * dy)
-        nx, ny = dx / distance, dy / distance
+        inverse = 1.0 / distance
+        nx, ny = dx * inverse, dy * inverse
         gap = distance - s[2 * BLOCK + p]
         force = social(model.social, gap)
         on_i = force * vision(model.vision, -(s[3 * BLOCK + p] * nx + s[4 * BLOCK + p] * ny))
@@ -145,7 +158,7 @@ def _scatter(people, i, j, count, s):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _contacts(model, people, i, j, slip, count, stretch, lead, s, touching):
+def _contacts(integrator, model, people, i, j, slip, first, touch, count, stretch, lead, s, touching):
     """Normal and tangential forces of the pairs in touch; a spring ends with its contact."""
     touches = 0
     for p in range(count):  # without a branch: most pairs do not touch
@@ -167,6 +180,19 @@ def _contacts(model, people, i, j, slip, count, stretch, lead, s, touching):
         v_t = uy * nx - ux * ny
         if turns(model.rotation):
             v_t -= people.radius[a] * people.spin[a] + people.radius[b] * people.spin[b]
+        if settles(integrator):
+            k = touch.counts[0]
+            touch.counts[0] = k + 1
+            touch.a[k], touch.b[k], touch.place[k] = a, b, first + p
+            touch.nx[k], touch.ny[k], touch.overlap[k] = nx, ny, overlap
+            touch.slip[k] = slip[p] + v_t * stretch
+            F_n = normal(model.normal, overlap, radius, mass, 0.0)
+            touch.radius[k], touch.mass[k], touch.F_n[k] = radius, mass, F_n
+            people.fx[a] += F_n * nx
+            people.fy[a] += F_n * ny
+            people.fx[b] -= F_n * nx
+            people.fy[b] -= F_n * ny
+            continue
         F_n = normal(model.normal, overlap, radius, mass, v_n)
         ahead = lead * v_t
         F_t, stretched = sliding(model.sliding, overlap, radius, mass, v_t, F_n, slip[p] + v_t * stretch - ahead)
@@ -182,7 +208,7 @@ def _contacts(model, people, i, j, slip, count, stretch, lead, s, touching):
 
 
 @njit(cache=True, error_model="numpy")
-def _at_walls(model, scene, people, near, stretch, lead):
+def _at_walls(integrator, model, scene, people, near, touch, stretch, lead):
     """Forces of the walls: bodies of infinite mass and radius, each acting through its closest point."""
     walls, joints, slips = scene.walls, scene.joints, near.wall_slip
     deepest = 0.0
@@ -204,6 +230,18 @@ def _at_walls(model, scene, people, near, stretch, lead):
             if turns(model.rotation):
                 v_t -= radius * people.spin[i]
             mass = people.mass[i]
+            if settles(integrator):
+                k = touch.counts[0] + touch.counts[1]
+                touch.counts[1] += 1
+                touch.a[k], touch.b[k], touch.place[k] = i, i, p
+                touch.nx[k], touch.ny[k], touch.overlap[k] = nx, ny, overlap
+                touch.slip[k] = slips[p] + v_t * stretch
+                touch.F_n[k] = normal(model.wall_normal, overlap, radius, mass, 0.0)
+                touch.radius[k], touch.mass[k] = radius, mass
+                F_n += touch.F_n[k]
+                people.fx[i] += F_n * nx
+                people.fy[i] += F_n * ny
+                continue
             pressing = normal(model.wall_normal, overlap, radius, mass, v_n)
             ahead, slip = lead * v_t, slips[p] + v_t * stretch
             F_t, stretched = sliding(model.wall_sliding, overlap, radius, mass, v_t, pressing, slip - ahead)

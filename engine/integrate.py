@@ -7,12 +7,16 @@ import numpy as np
 from numba import njit
 
 from engine.forces import BLOCK, ROWS, forces
-from engine.integrators import correct, lead, predict
-from engine.integrators.choice import kick
+from engine.integrators import begin, correct, lead, predict, settles, share
 from engine.laws import turns
-from engine.neighbours import rebuilt
+from engine.neighbours import nobody_in_touch, rebuilt
+from engine.stability import step_limits
 
 FAR = 1e6  # m; whoever is farther from the origin has been thrown out of the world
+MOST_PARTS = 64  # into which a step is cut
+FIRST_SKIN, LEAST_SKIN = 0.12, 0.01  # m
+LIST_COST = 2.4  # of making lists, in visits of all pairs
+STRIDE = 0.2  # of the smallest radius: how far a person may move in one go
 RUNNING, ALL_OUT, BLOCKED, FROZEN, TIME_LIMIT, UNSTABLE = range(6)
 
 
@@ -22,8 +26,10 @@ class Rules(NamedTuple):
     dt: float  # s
     reach: float  # m, largest gap of two persons that interact
     wall_reach: float  # m, of person and wall
-    skin: float  # m
+    skin: float  # m; 0: adapted
     deepest: float  # m, the smallest radius: overlap at which bodies pass through each other
+    lightest: float  # kg, the smallest mass
+    turning: float  # see `engine.stability.step_limits`
     last_step: int  # the time limit
     patience: int  # steps without anybody getting out after which the exits are blocked
 
@@ -37,9 +43,21 @@ class Clock(NamedTuple):
     last_out: int  # step at which somebody got out
     outcome: int
     rebuilds: int
-    max_overlap: float  # m
+    cuts: int  # steps that were cut
+    skin: float  # m, of the present lists
+    served: int  # for how many forces the present lists have served
+    part: float  # s, length of the last part of a step
+    overlap: float  # m, largest now
+    speed: float  # m/s, largest now
+    max_overlap: float  # m, largest ever
     max_speed: float  # m/s
-    culprit: int  # person who is nowhere; -1: none
+    culprit: int  # person who is pressed or thrown through others, or nowhere; -1: nobody
+    partner: int  # the other person of that contact; -1: nobody
+
+
+def begun(N: int) -> Clock:
+    """The clock of N persons before the first forces."""
+    return Clock(-1, N, 0, 0, RUNNING, 0, 0, 0.0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, -1, -1)
 
 
 class Log(NamedTuple):
@@ -53,48 +71,66 @@ class Log(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy")
-def advance(integrator, model, scene, rules, people, near, log, clock, until):
+def advance(integrator, model, scene, rules, people, near, touch, log, clock, until):
     """Advance a run to step `until` or its end.
 
-    `people` and `log` are changed in place; the new lists and clock are returned. A run begins with a step
-    of no length, which makes the lists and the first forces. It is unstable when somebody is nowhere, moves by
-    more than half the smallest radius in a step, or is pressed deeper than that radius into another, or than
-    three quarters of it into a wall: nobody can have passed through either before.
+    `people` and `log` are changed in place; the new lists, contacts and clock are returned. A run begins with a
+    step of no length, which makes the lists and the first forces. A step that the laws do not allow at the present
+    overlap, or in which somebody would move farther than STRIDE, is cut into equal parts. A run is unstable when
+    somebody is nowhere, moves by more than half the smallest radius in a part, or is pressed deeper than that radius
+    into another, or than three quarters of it into a wall: nobody can have passed through either before.
     """
     step, n, turning = clock.step, clock.inside, turns(model.rotation)
-    N_out, last_out, outcome, rebuilds = clock.N_out, clock.last_out, clock.outcome, clock.rebuilds
-    max_overlap, max_speed_squared, culprit = clock.max_overlap, clock.max_speed**2, clock.culprit
+    N_out, last_out, outcome, rebuilds, cuts = clock.N_out, clock.last_out, clock.outcome, clock.rebuilds, clock.cuts
+    part, overlap, speed, max_overlap, max_speed = (
+        clock.part,
+        clock.overlap,
+        clock.speed,
+        clock.max_overlap,
+        clock.max_speed,
+    )
+    culprit, partner = clock.culprit, clock.partner
     scratch, touching = np.empty(ROWS * BLOCK), np.empty(BLOCK + 1, np.uint32)
-    gap, wall_gap = rules.reach + rules.skin, rules.wall_reach + rules.skin
+    skin, served = clock.skin, clock.served
     while step < until and outcome == RUNNING:
-        dt = rules.dt if step >= 0 else 0.0
-        kick(turning, people, n, 0.5 * dt)
-        crossed = _cross(scene.exits, people, n, dt, step, log, N_out)
-        _drift(people, n, dt)
-        predict(integrator, turning, people, n, dt)
-        step += 1
-        if crossed > 0:
-            N_out += crossed
-            last_out = step
-        someone_walks_on = N_out > people.x.size - n
-        if (someone_walks_on and _gone(scene.exits, people, n)) or _left_their_skin(people, n, rules.skin):
-            culprit = _first_nowhere(people, n)
-            if culprit >= 0:
+        parts = _parts(integrator, model, rules, overlap, speed) if step >= 0 else 1
+        cuts += parts > 1
+        crossed = 0
+        for piece in range(parts):
+            before, part = part, rules.dt / parts if step >= 0 else 0.0
+            begin(integrator, model, people, near, touch, n, before, part)
+            crossed += _cross(scene.exits, people, n, part, step * rules.dt + piece * part, log, N_out + crossed)
+            _drift(people, n, part)
+            predict(integrator, turning, people, n, part)
+            someone_walks_on = N_out + crossed > people.x.size - n
+            if (someone_walks_on and _gone(scene.exits, people, n)) or _left_their_skin(people, n, skin):
+                culprit, partner = _first_nowhere(people, n, near)
+                if culprit >= 0:
+                    outcome = UNSTABLE
+                    break
+                skin, served = rules.skin if rules.skin > 0.0 else _next_skin(skin, served, rules), 0
+                near, n = rebuilt(people, n, scene.walls, near, rules.reach + skin, rules.wall_reach + skin)
+                if settles(integrator) and near.i.size + near.wall_i.size > touch.a.size:
+                    touch = nobody_in_touch(2 * (near.i.size + near.wall_i.size))
+                rebuilds += 1
+            served += 1
+            ahead = lead(integrator) * (part if step >= 0 else rules.dt)
+            stretch = part if step >= 0 else ahead
+            between, at_wall = forces(
+                integrator, model, scene, people, n, near, touch, stretch, ahead, scratch, touching
+            )
+            correct(integrator, turning, people, n, part)
+            overlap, speed = max(between, at_wall), math.sqrt(_fastest(people, n))
+            max_overlap, max_speed = max(max_overlap, overlap), max(max_speed, speed)
+            too_fast = part * speed > 0.5 * rules.deepest
+            if too_fast or between > rules.deepest or at_wall > 0.75 * rules.deepest:
+                culprit, partner = _most_moved(people, n, near)
                 outcome = UNSTABLE
                 break
-            moved_to, n = _compacted(people, n)
-            near = rebuilt(people, n, scene.walls, near, moved_to, gap, wall_gap)
-            rebuilds += 1
-        ahead = lead(integrator) * rules.dt
-        stretch = dt if step > 0 else ahead
-        overlap, at_wall = forces(model, scene, people, n, near, stretch, ahead, scratch, touching)
-        correct(integrator, turning, people, n, dt)
-        max_overlap = max(max_overlap, overlap, at_wall)
-        max_speed_squared = max(max_speed_squared, _fastest(people, n))
-        too_fast = dt * dt * max_speed_squared > 0.25 * rules.deepest**2
-        if too_fast or overlap > rules.deepest or at_wall > 0.75 * rules.deepest:
-            culprit = _most_moved(people, n, near)
-            outcome = UNSTABLE
+        step += 1
+        N_out += crossed
+        last_out = step if crossed > 0 else last_out
+        if outcome == UNSTABLE:
             break
         if N_out == people.x.size:
             outcome = ALL_OUT
@@ -102,8 +138,55 @@ def advance(integrator, model, scene, rules, people, near, log, clock, until):
             outcome = BLOCKED
         elif step >= rules.last_step:
             outcome = TIME_LIMIT
-    max_speed = np.sqrt(max_speed_squared)
-    return near, Clock(step, n, N_out, last_out, outcome, rebuilds, max_overlap, max_speed, culprit)
+    return (
+        near,
+        touch,
+        Clock(
+            step,
+            n,
+            N_out,
+            last_out,
+            outcome,
+            rebuilds,
+            cuts,
+            skin,
+            served,
+            part,
+            overlap,
+            speed,
+            max_overlap,
+            max_speed,
+            culprit,
+            partner,
+        ),
+    )
+
+
+@njit(cache=True, error_model="numpy")
+def _next_skin(skin, served, rules):
+    """Skin of the next lists, m, at which making lists and visiting the pairs in the skin cost least together.
+
+    The pairs grow as (D + skin)^2, D being the distance at which persons interact, and lists last for
+    skin/(2 u) forces, where somebody moves by u between two; making them costs as much as LIST_COST visits of
+    all pairs.
+    """
+    if served == 0:
+        return FIRST_SKIN
+    distance = 2.0 * rules.deepest + rules.reach
+    return min(max(math.sqrt(LIST_COST * distance * skin / (2.0 * served)), LEAST_SKIN), distance)
+
+
+@njit(cache=True, error_model="numpy")
+def _parts(integrator, model, rules, overlap, speed):
+    """Into how many equal parts the next step must be cut."""
+    limits = step_limits(model, share(integrator), overlap, rules.deepest, rules.lightest, rules.turning)
+    longest = min(min(limits[0], limits[1]), limits[2])
+    if speed > 0.0:
+        longest = min(longest, STRIDE * rules.deepest / speed)
+    parts = 1
+    while parts < MOST_PARTS and rules.dt > parts * longest:
+        parts *= 2
+    return parts
 
 
 @njit(cache=True, error_model="numpy")
@@ -118,23 +201,23 @@ def _fastest(people, n):
 @njit(cache=True, error_model="numpy")
 def _most_moved(people, n, near):
     """Who is pressed deepest, or fastest where nobody is pressed deeper than half the own radius."""
-    culprit, most = np.int64(0), 0.5
+    culprit, partner, most = np.int64(0), np.int64(-1), 0.5
     for p in range(near.i.size):
         i, j = near.i[p], near.j[p]
         apart = math.hypot(people.x[i] - people.x[j], people.y[i] - people.y[j])
         depth = (people.radius[i] + people.radius[j] - apart) / min(people.radius[i], people.radius[j])
         if depth > most:
-            culprit, most = np.int64(i), depth
+            culprit, partner, most = np.int64(i), np.int64(j), depth
     if most == 0.5:
         fastest = 0.0
         for i in range(n):
             if people.vx[i] ** 2 + people.vy[i] ** 2 > fastest:
                 culprit, fastest = np.int64(i), people.vx[i] ** 2 + people.vy[i] ** 2
-    return people.who[culprit]
+    return people.who[culprit], (people.who[partner] if partner >= 0 else -1)
 
 
 @njit(cache=True, error_model="numpy")
-def _cross(lines, people, n, dt, step, log, N_out):
+def _cross(lines, people, n, dt, time, log, N_out):
     """Log who will cross an exit in this step, at the time and place interpolated in it; returns how many.
 
     No helper functions in this loop: a call with arrays counts references, which costs more than the work.
@@ -152,7 +235,7 @@ def _cross(lines, people, n, dt, step, log, N_out):
                 at_x, at_y = x[i] + part * dt * vx[i], y[i] + part * dt * vy[i]
                 if 0.0 <= (at_x - x0) * ux + (at_y - y0) * uy <= length:
                     place = N_out + crossed
-                    log.time[place], log.person[place] = (step + part) * dt, people.who[i]
+                    log.time[place], log.person[place] = time + part * dt, people.who[i]
                     log.x[place], log.y[place], log.door[place] = at_x, at_y, k
                     out[i] = k + 1
                     crossed += 1
@@ -193,35 +276,21 @@ def _left_their_skin(people, n, skin):
 
 
 @njit(cache=True)
-def _first_nowhere(people, n):
-    """Look for somebody whose place is no number, or far outside any scene; -1: nobody."""
-    for i in range(n):
-        if not abs(people.x[i]) + abs(people.y[i]) < FAR:  # true for nan
-            return people.who[i]
-    return -1
+def _first_nowhere(people, n, near):
+    """Look for somebody whose place is no number, or far outside any scene, and for a neighbour of the same fate.
 
-
-@njit(cache=True, error_model="numpy")
-def _compacted(people, n):
-    """Close the gaps that the gone leave; returns everybody's new number (-1: gone) and how many stay."""
-    moved_to, stay = np.empty(n, np.int64), 0
+    Returns (-1, -1) if there is nobody.
+    """
     for i in range(n):
-        if people.who[i] < 0:
-            moved_to[i] = -1
-            continue
-        moved_to[i] = stay
-        if stay != i:
-            _move(people, i, stay)
-        stay += 1
-    return moved_to, stay
+        if _nowhere(people.x[i], people.y[i]):
+            for p in range(near.i.size):
+                a, b = near.i[p], near.j[p]
+                if (a == i or b == i) and _nowhere(people.x[a], people.y[a]) and _nowhere(people.x[b], people.y[b]):
+                    return people.who[i], people.who[a + b - i]
+            return people.who[i], -1
+    return -1, -1
 
 
 @njit(cache=True)
-def _move(people, i, to):
-    people.who[to], people.out[to] = people.who[i], people.out[i]
-    people.x[to], people.y[to] = people.x[i], people.y[i]
-    people.vx[to], people.vy[to], people.spin[to] = people.vx[i], people.vy[i], people.spin[i]
-    people.radius[to], people.mass[to], people.inertia[to] = people.radius[i], people.mass[i], people.inertia[i]
-    people.v_d[to] = people.v_d[i]
-    people.fx_before[to], people.fy_before[to] = people.fx_before[i], people.fy_before[i]
-    people.torque_before[to] = people.torque_before[i]
+def _nowhere(x, y):
+    return not abs(x) + abs(y) < FAR  # true for nan

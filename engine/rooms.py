@@ -1,5 +1,7 @@
 """Rooms: the papers' scenes as functions of named parameters."""
 
+from collections.abc import Callable
+
 from engine import models
 from engine.crowd import Crowd
 from engine.errors import number, require
@@ -84,4 +86,71 @@ def lin_room(
     )
 
 
-ROOMS = {"lin_room": lin_room}
+def parisi_room(
+    v_d: float = 1.0,
+    N: int = 200,
+    seed: int = 0,
+    L: float = 1.2,
+    A: float | None = None,
+    B: float = 0.08,
+    k_n: float = 1.2e5,
+    kappa: float = 2.4e5,
+    g_n: float = 100.0,
+    tau: float = 0.5,
+    reading: str = "default",
+    mass: float = 80.0,
+    size: float = 20.0,
+    dt: float = 1e-4,
+    force_tolerance: float = 1e-3,
+    integrator: str = "velocity_verlet",
+    patience: float = 120.0,
+    time_limit: float = 1000.0,
+    every: float = 0.0,
+    contacts: bool = False,
+) -> Scenario:
+    """The room of Parisi & Dorso (2005), Sec. 3: 20 m x 20 m, a door of 1.2 m, 200 persons.
+
+    Whoever has crossed the door walks on, and is felt, for another metre.
+
+    Parameters
+    ----------
+    v_d : middle of the desired speeds, which spread by 0.05 m/s to both sides, m/s
+    N : number of persons
+    seed : number of the run; places, radii, desired speeds and initial directions follow from it
+    L : width of the door, m
+    A, B : strength (N) and range (m) of the social force (Eq. 2); A follows from the reading if it is not given
+    k_n, kappa, g_n : stiffness (N/m), sliding friction (kg/(m s)) and damping (kg/s) of contacts (Eq. 3)
+    tau : reaction time, s
+    reading : "default" or "printed", see `models.parisi_dorso`
+    mass : of everybody, kg (the paper does not say)
+    size : side of the room, m
+    dt, force_tolerance, integrator : see `Numerics`
+    patience, time_limit : see `Stopping`
+    every, contacts : see `Record`
+
+    Raises
+    ------
+    BadInput
+        If a parameter is out of its range or the crowd cannot fit.
+    """
+    v_d = number("v_d", v_d, "give the desired speed in m/s")
+    require(v_d >= 0.05, "v_d", v_d, "is below 0.05 m/s, by which desired speeds spread", "give a larger one")
+    return Scenario(
+        scene=square_room(size, L, walk_on=1.0),
+        crowd=Crowd.uniform(
+            N,
+            (0.0, size, 0.0, size),
+            radius=(0.25, 0.29),
+            mass=mass,
+            v_d=(v_d - 0.05, v_d + 0.05),
+            speed=(0.995, 1.005),
+        ),
+        model=models.parisi_dorso(reading, A, B, k_n, kappa, g_n, tau),
+        numerics=Numerics(dt=dt, force_tolerance=force_tolerance, integrator=integrator),
+        stopping=Stopping(patience=patience, time_limit=time_limit),
+        record=Record(every=every, contacts=contacts),
+        seed=seed,
+    )
+
+
+ROOMS: dict[str, Callable[..., Scenario]] = {"lin_room": lin_room, "parisi_room": parisi_room}

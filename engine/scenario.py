@@ -10,19 +10,21 @@ import numpy as np
 from engine import crowd as crowds
 from engine import laws, models
 from engine.errors import number, require
-from engine.integrators import INTEGRATORS
+from engine.integrators import INTEGRATORS, share
 from engine.models import Model
 from engine.scene import Exit, Scene
+from engine.stability import CAUSES, plain_step_limits
 
 MOST_STEPS = 1e12
 ASSUMED_OVERLAP = 0.2  # of the smallest radius: what the step must be able to follow
 
 
-def _make_positive(part: Any, remedy: str) -> None:
+def _make_positive(part: Any, remedy: str, may_be_zero: tuple[str, ...] = ()) -> None:
     """Turn all fields of a frozen dataclass into floats above 0, so that 120 and 120.0 are one scenario."""
     for field in (field for field in fields(part) if field.type is float):
         value = number(field.name, getattr(part, field.name), remedy)
-        require(value > 0, field.name, value, "is not finite and positive", remedy)
+        good = value > 0 or (value == 0 and field.name in may_be_zero)
+        require(good, field.name, value, "is not finite and positive", remedy)
         object.__setattr__(part, field.name, value)
 
 
@@ -35,16 +37,17 @@ class Numerics:
     dt : time step, s
     force_tolerance : the social force ends, without a jump, where it has fallen to this, N
     integrator : "velocity_verlet" (as the papers print it) or "predictor" (second order), see `engine.integrators`
-    skin : how much farther than they reach pairs are listed, m (for speed; changes a run by rounding only)
+    skin : how much farther than they reach pairs are listed, m; 0: adapted to how fast people move, for speed
+        (changes a run by rounding only)
     """
 
     dt: float = 1e-3
     force_tolerance: float = 1e-3
-    skin: float = 0.12
+    skin: float = 0.0
     integrator: str = "velocity_verlet"
 
     def __post_init__(self) -> None:
-        _make_positive(self, "give a value above 0")
+        _make_positive(self, "give a value above 0", may_be_zero=("skin",))
         known = ", ".join(INTEGRATORS)
         require(
             self.integrator in INTEGRATORS,
@@ -166,33 +169,17 @@ def _check_step(scenario: Scenario) -> None:
 
 
 def step_limit(scenario: Scenario) -> tuple[float, str]:
-    """Longest stable time step, s, and what sets it.
-
-    For springs 2/omega of the stiffest mode of a triangular packing, omega^2 = 3 k/m of one pair, at an overlap
-    of a fifth of the smallest radius; the tangential spring also turns the bodies, and so acts on a smaller
-    mass. For dampers a third of 2/rate, since a person has up to six neighbours; for the drive tau.
-    """
-    springs, dampers, model = [0.0], [0.0], scenario.model
+    """Longest step that the laws allow at a fifth of the smallest radius of overlap, s, and what sets it."""
     radius, mass = min(scenario.crowd.radius), min(scenario.crowd.mass)
-    overlap = ASSUMED_OVERLAP * radius
-    turning = 1.0 + (1.0 / model.rotation.shape if laws.turns(model.rotation) else 0.0)
-    for social, normal, sliding, r, m in (
-        (model.social, model.normal, model.sliding, radius / 2, mass / 2),
-        (model.wall_social, model.wall_normal, model.wall_sliding, radius, mass),
-    ):
-        springs.append((laws.social_stiffness(social) + laws.normal_stiffness(normal, overlap, r)) / m)
-        springs.append(laws.sliding_stiffness(sliding, overlap, r) * turning / m)
-        dampers.append(laws.normal_damping(normal, overlap, r, m))
-        dampers.append(laws.sliding_damping(sliding, overlap, r) * turning)
-    return min(
-        (_inverse(math.sqrt(3.0 * max(springs)) / 2.0), "stiffness of the contacts"),
-        (_inverse(1.5 * max(dampers)), "damping of the contacts"),
-        (_inverse(laws.drive_rate(model.drive)), "drive's tau"),
-    )
+    tolerated = share(INTEGRATORS[scenario.numerics.integrator])
+    easier = turning(scenario.model.rotation)
+    limits = plain_step_limits(scenario.model, tolerated, ASSUMED_OVERLAP * radius, radius, mass, easier)
+    return min(zip(limits, CAUSES, strict=True))
 
 
-def _inverse(rate: float) -> float:
-    return 1.0 / rate if rate > 0.0 else math.inf
+def turning(rotation: Any) -> float:
+    """How much easier a surface is to move than its body, which also turns: 1 + mass radius^2/inertia."""
+    return 1.0 + 1.0 / rotation.shape if laws.turns(rotation) else 1.0
 
 
 PART_TYPES: dict[str, Any] = {

@@ -12,8 +12,8 @@ from engine.errors import require
 from engine.integrate import Clock, Log, Rules, advance
 from engine.integrators import INTEGRATORS
 from engine.interrupts import interrupts_held
-from engine.neighbours import Near, People, nobody_near
-from engine.scenario import Scenario
+from engine.neighbours import Near, People, nobody_in_touch, nobody_near
+from engine.scenario import Scenario, turning
 from engine.scene import SceneArrays, as_arrays
 
 OUTCOMES = ("missing", "all_out", "blocked", "frozen", "time_limit", "unstable")  # their numbers are the kernel's
@@ -62,7 +62,9 @@ class Run:
     samples : the state along the run, if it was recorded
     max_overlap, max_speed : m, m/s
     steps, rebuilds : of the integration, of the neighbour lists
-    culprit : the person who was pressed or thrown through others, or is nowhere, if unstable; else -1
+    cuts : steps that were cut into parts, because the laws did not allow them whole at that overlap or speed
+    culprit, partner : the person who was pressed or thrown through others, or is nowhere, if unstable, and the
+        other person of that contact, if there is one; else -1
     """
 
     scenario: Scenario
@@ -79,7 +81,9 @@ class Run:
     max_speed: float
     steps: int
     rebuilds: int
+    cuts: int
     culprit: int
+    partner: int
 
     @property
     def N(self) -> int:
@@ -100,7 +104,8 @@ class Run:
             "frozen": f"frozen: at rest for good after {self.end_time:.1f} s, {self.N_out} of {self.N} out",
             "time_limit": f"stopped at the time limit of {self.end_time:g} s, {self.N_out} of {self.N} out",
             "unstable": f"unstable after {self.end_time:.4f} s: person {self.culprit} was pressed or thrown through "
-            f"others (overlap up to {self.max_overlap:.2g} m, speed up to {self.max_speed:.3g} m/s); shorten dt",
+            f"{f'person {self.partner}' if self.partner >= 0 else 'others'} (overlap up to {self.max_overlap:.2g} m, "
+            f"speed up to {self.max_speed:.3g} m/s); shorten dt",
         }[self.outcome]
 
 
@@ -122,11 +127,11 @@ def simulate(scenario: Scenario) -> Run:
     people, model, rules = _people(scenario, start), _with_cut(scenario), _rules(scenario)
     integrator = INTEGRATORS[scenario.numerics.integrator]
     log = _empty_log(scenario.crowd.N)
-    clock = Clock(-1, scenario.crowd.N, 0, 0, integrate.RUNNING, 0, 0.0, 0.0, -1)
-    near, recorder = nobody_near(), _Recorder(scenario)
+    clock = integrate.begun(scenario.crowd.N)
+    near, touch, recorder = nobody_near(), nobody_in_touch(0), _Recorder(scenario)
     with interrupts_held() as raise_interrupt:
         for until in recorder.looks(rules):
-            near, clock = advance(integrator, model, scene, rules, people, near, log, clock, until)
+            near, touch, clock = advance(integrator, model, scene, rules, people, near, touch, log, clock, until)
             raise_interrupt()
             if clock.step == 0:
                 _check_start(people, clock, rules)
@@ -153,7 +158,13 @@ def _people(scenario: Scenario, start: Start) -> People:
     inertia = rotation.shape * start.mass * start.radius**2 if laws.turns(rotation) else np.full(N, math.inf)
     state: dict[str, np.ndarray] = {name: np.zeros(N) for name in People._fields}
     state |= {name: value.copy() for name, value in start._asdict().items()}
-    state |= {"who": np.arange(N), "out": np.zeros(N, np.int64), "inertia": inertia}
+    state |= {
+        "who": np.arange(N),
+        "out": np.zeros(N, np.int64),
+        "inertia": inertia,
+        "ease": 1.0 / start.mass,
+        "ease_to_turn": 1.0 / inertia,
+    }
     return People(**state | {"listed_x": np.full(N, np.nan), "listed_y": np.full(N, np.nan)})  # nowhere: not listed
 
 
@@ -172,6 +183,8 @@ def _rules(scenario: Scenario) -> Rules:
         wall_reach=laws.reach(model.wall_social),
         skin=float(scenario.numerics.skin),
         deepest=min(scenario.crowd.radius),
+        lightest=min(scenario.crowd.mass),
+        turning=turning(model.rotation),
         last_step=max(math.ceil(scenario.stopping.time_limit / dt - 1e-9), 1),
         patience=max(math.ceil(scenario.stopping.patience / dt - 1e-9), 1),
     )
@@ -261,5 +274,7 @@ def _run(scenario: Scenario, start: Start, log: Log, clock: Clock, samples: Samp
         max_speed=clock.max_speed,
         steps=clock.step,
         rebuilds=clock.rebuilds,
+        cuts=clock.cuts,
         culprit=clock.culprit,
+        partner=clock.partner,
     )

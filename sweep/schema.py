@@ -12,7 +12,7 @@ import numpy as np
 
 from engine import FINGERPRINT, OUTCOMES, Run, Scenario
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 CONVENTIONS = "CF-1.11"
 MISSING = OUTCOMES.index("missing")
 FLAGS = {"flag_values": np.arange(len(OUTCOMES), dtype=np.int8), "flag_meanings": " ".join(OUTCOMES)}
@@ -63,7 +63,9 @@ VARIABLES = (
     Variable("max_speed", RUN, "f8", "m s-1", "largest speed of anybody", "max_speed", np.nan),
     Variable("steps", RUN, "i8", "1", "number of time steps", "steps", 0),
     Variable("rebuilds", RUN, "i8", "1", "number of times the neighbour lists were made", "rebuilds", 0),
-    Variable("culprit", RUN, "i4", "1", "person whose place became no number, -1 for nobody", "culprit"),
+    Variable("cuts", RUN, "i8", "1", "number of time steps that were cut into parts", "cuts", 0),
+    Variable("culprit", RUN, "i4", "1", "person pressed or thrown through others, -1 for nobody", "culprit"),
+    Variable("partner", RUN, "i4", "1", "the person it was pressed through, -1 for nobody", "partner"),
     Variable("radius", PERSON, "f8", "m", "radius", "start.radius"),
     Variable("mass", PERSON, "f8", "kg", "mass", "start.mass"),
     Variable("v_d_person", PERSON, "f8", "m s-1", "desired speed", "start.v_d"),
@@ -101,7 +103,7 @@ PARAMETERS = {  # keywords of rooms: units and long_name of a coordinate
     "tau": ("s", "reaction time"),
     "reading": ("1", "what sliding does: RK, RS, W, W01, R02, WK, WR or B"),
     "inertia": ("1", "moment of inertia: sphere, disc or none"),
-    "integrator": ("1", "velocity_verlet or predictor"),
+    "integrator": ("1", "velocity_verlet, predictor or semi_implicit"),
     "contacts": ("1", "also record who touches whom"),
     "size": ("m", "side of the room"),
     "dt": ("s", "time step"),

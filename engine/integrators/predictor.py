@@ -7,11 +7,17 @@ the mean of the slip velocities at both ends of the step.
 
 from typing import NamedTuple
 
-from engine.integrators.choice import correct, kick, lead, predict
+from engine.integrators.choice import begin, correct, kick, lead, predict, settles, share
+from engine.laws import turns
 
 
 class Predictor(NamedTuple):
     """Second order on smooth stretches; half the stability limit of velocity Verlet for sliding friction."""
+
+
+@begin.law(Predictor)
+def _first_half(integrator, model, people, near, touch, n, before, dt):
+    kick(turns(model.rotation), people, n, 0.5 * dt)
 
 
 @predict.law(Predictor)
@@ -25,12 +31,22 @@ def _full_step(integrator, turning, people, n, dt):
 @correct.law(Predictor)
 def _mean_force(integrator, turning, people, n, dt):
     for i in range(n):
-        people.vx[i] += 0.5 * dt * (people.fx[i] - people.fx_before[i]) / people.mass[i]
-        people.vy[i] += 0.5 * dt * (people.fy[i] - people.fy_before[i]) / people.mass[i]
+        people.vx[i] += 0.5 * dt * (people.fx[i] - people.fx_before[i]) * people.ease[i]
+        people.vy[i] += 0.5 * dt * (people.fy[i] - people.fy_before[i]) * people.ease[i]
         if turning:
-            people.spin[i] += 0.5 * dt * (people.torque[i] - people.torque_before[i]) / people.inertia[i]
+            people.spin[i] += 0.5 * dt * (people.torque[i] - people.torque_before[i]) * people.ease_to_turn[i]
 
 
 @lead.law(Predictor)
 def _half_a_step(integrator):
+    return 0.5
+
+
+@settles.law(Predictor)
+def _evaluates(integrator):
+    return False
+
+
+@share.law(Predictor)
+def _half_of_it(integrator):
     return 0.5

@@ -2,11 +2,17 @@
 
 from typing import NamedTuple
 
-from engine.integrators.choice import correct, kick, lead, predict
+from engine.integrators.choice import begin, correct, kick, lead, predict, settles, share
+from engine.laws import turns
 
 
 class VelocityVerlet(NamedTuple):
     """Second order where forces do not depend on velocity, first order where they do."""
+
+
+@begin.law(VelocityVerlet)
+def _first_half(integrator, model, people, near, touch, n, before, dt):
+    kick(turns(model.rotation), people, n, 0.5 * dt)
 
 
 @predict.law(VelocityVerlet)
@@ -22,3 +28,13 @@ def _second_half(integrator, turning, people, n, dt):
 @lead.law(VelocityVerlet)
 def _no_lead(integrator):
     return 0.0
+
+
+@settles.law(VelocityVerlet)
+def _evaluates(integrator):
+    return False
+
+
+@share.law(VelocityVerlet)
+def _all_of_it(integrator):
+    return 1.0

@@ -13,7 +13,8 @@ from numba import njit
 
 from engine import cache, forces, models, rooms, simulate
 from engine.exponential import exp
-from engine.neighbours import nobody_near
+from engine.integrators import INTEGRATORS
+from engine.neighbours import nobody_in_touch, nobody_near
 
 simulation = sys.modules["engine.simulate"]  # the name engine.simulate is the function
 
@@ -35,12 +36,13 @@ def test_the_polynomial_exponential_is_within_1e13():
 
 
 @pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="looks for x86-64 vector registers")
-def test_the_pair_arithmetic_is_vectorised():
+@pytest.mark.parametrize("model", [models.lin_dem(), models.parisi_dorso(), models.lambda_anisotropic()])
+def test_the_pair_arithmetic_is_vectorised(model):
     loop = njit(error_model="numpy")(forces._between_persons.py_func)
     scenario = rooms.lin_room(**SMALL)
     people = simulation._people(scenario, scenario.crowd.draw(5, np.empty((0, 5))))
     scratch, touching = np.ones(forces.ROWS * forces.BLOCK), np.empty(forces.BLOCK + 1, np.uint32)
-    loop(models.lin_dem(), people, nobody_near(), 1e-3, 0.0, scratch, touching)
+    loop(INTEGRATORS["semi_implicit"], model, people, nobody_near(), nobody_in_touch(0), 0.0, 0.0, scratch, touching)
     (assembly,) = loop.inspect_asm().values()
     for operation in ("vsqrtpd", "vdivpd", "vmulpd"):
         assert re.search(rf"{operation}\s.*(ymm|zmm)", assembly), operation
