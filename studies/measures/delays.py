@@ -106,6 +106,25 @@ def delay_survival(
     )
 
 
+def in_bins(d: xr.DataArray, edges: Sequence[float]) -> xr.DataArray:
+    """Number of delays d (axes..., exit) in the bins [edge, next edge): (axes..., delay).
+
+    Raises
+    ------
+    ValueError
+        If the edges do not ascend.
+    """
+    bounds = np.asarray(edges, dtype=np.float64)
+    if bounds.size < 2 or not (np.diff(bounds) > 0).all():
+        raise ValueError(f"edges={tuple(edges)} do not ascend: give at least two edges in s, each above the last")
+    inside = [((d >= a) & (d < b)).sum("exit") for a, b in pairwise(bounds)]
+    counts = xr.concat(inside, dim="delay").transpose(..., "delay")
+    counts = counts.assign_coords(delay=bounds[:-1], delay_end=("delay", bounds[1:]))
+    counts["delay"].attrs = {"units": "s", "long_name": "least delay of the bin"}
+    counts["delay_end"].attrs = {"units": "s", "long_name": "delay below which the bin ends"}
+    return counts
+
+
 def delay_counts(
     ds: xr.Dataset, edges: Sequence[float] = PARISI_BINS, first: int = 1, last: int | None = None
 ) -> xr.Dataset:
@@ -131,15 +150,7 @@ def delay_counts(
     ValueError
         If the edges do not ascend, the window is empty or a variable is missing.
     """
-    bounds = np.asarray(edges, dtype=np.float64)
-    if bounds.size < 2 or not (np.diff(bounds) > 0).all():
-        raise ValueError(f"edges={tuple(edges)} do not ascend: give at least two edges in s, each above the last")
-    d = delays(ds, first, last).delay
-    inside = [((d >= a) & (d < b)).sum("exit") for a, b in pairwise(bounds)]
-    counts = xr.concat(inside, dim="delay").transpose(..., "delay").where(outcome_is(ds, *KNOWN))
-    counts = counts.assign_coords(delay=bounds[:-1], delay_end=("delay", bounds[1:]))
-    counts["delay"].attrs = {"units": "s", "long_name": "least delay of the bin"}
-    counts["delay_end"].attrs = {"units": "s", "long_name": "delay below which the bin ends"}
+    counts = in_bins(delays(ds, first, last).delay, edges).where(outcome_is(ds, *KNOWN))
     return xr.Dataset(
         {
             "delay_count": described(counts, "1", "delays in the bin"),
