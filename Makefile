@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
 
-.PHONY: help setup bench test lint constraints clean
+.PHONY: help setup bench stress test lint constraints clean
 .DEFAULT_GOAL := help
 
 help:  ## this list
@@ -34,6 +34,9 @@ study-%: $(READY)  ## reproduce a figure: make study-fig10 [QUICK=1] [JOBS=2]
 
 bench: $(READY)  ## this engine beside its peers: make bench [QUICK=1]; $(BIN)/pip install -e '.[bench]' brings them
 	@$(BIN)/python -m studies.bench $(if $(QUICK),--quick) $(if $(DOCS),--docs)
+
+stress: $(READY)  ## the engine at its edges and 10,000 random scenes: make stress [QUICK=1] [JOBS=2]
+	@$(BIN)/python -m studies.stress --jobs $(JOBS) $(if $(QUICK),--quick) $(if $(DOCS),--docs)
 
 test: $(READY)  ## all tests
 	@$(BIN)/python -m pytest

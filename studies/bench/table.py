@@ -1,17 +1,14 @@
 """Timings -> the table, what it says of the goals, and the page in the docs."""
 
 import datetime
-import os
-import platform
 from collections.abc import Iterable
-from importlib import metadata
-from pathlib import Path
 from statistics import median
 from typing import NamedTuple
 
 from studies.bench.compare import Found
 from studies.bench.packing import DENSITY, DEPTH, V_D
 from studies.bench.peers import NAMES, load
+from studies.presentation.machine import machine
 
 OURS = "jamsweep"
 HEAD = (
@@ -131,26 +128,17 @@ def _said_once(found: list[Found]) -> list[tuple[str, str]]:
 # --- Page -----------------------------------------------------------------------------------------------
 
 
-def machine() -> str:
-    """The machine's kind, and the versions that matter."""
-    peers = [load(name) for name in NAMES]
-    versions = ", ".join(f"{peer.name} {peer.version()}" for peer in peers if not peer.missing())
-    cores = f"{os.cpu_count()} cores"
-    return f"{_processor()}, {cores}; Python {platform.python_version()}, numba {metadata.version('numba')}; {versions}"
-
-
-def _processor() -> str:
-    path = Path("/proc/cpuinfo")
-    lines = path.read_text("utf-8").splitlines() if path.exists() else []
-    models = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
-    return models[0] if models else platform.processor() or platform.machine()
+def peers() -> str:
+    """The codes that were at hand, and their versions."""
+    found = [load(name) for name in NAMES]
+    return ", ".join(f"{peer.name} {peer.version()}" for peer in found if not peer.missing())
 
 
 def page(text: str, command: str) -> str:
     """The page of the docs."""
     return (
         "# Benchmark\n\n"
-        f"Measured on {datetime.date.today().isoformat()} with `{command}` on: {machine()}.\n\n"
+        f"Measured on {datetime.date.today().isoformat()} with `{command}` on: {machine()}; {peers()}.\n\n"
         "Quote the ratios: bare times are those of this machine on that day.\n\n"
         f"{text}\n"
     )
