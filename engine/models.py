@@ -115,7 +115,7 @@ def parisi_dorso(
     B: float = 0.08,  # m
     k_n: float = 1.2e5,  # N/m
     kappa: float = 2.4e5,  # kg/(m s)
-    g_n: float = 100.0,  # kg/s
+    g: float = 100.0,  # kg/s
     tau: float = 0.5,  # s
 ) -> Model:
     """The social force model with granular contact of Parisi & Dorso (2005), Eqs. 1-3.
@@ -125,7 +125,7 @@ def parisi_dorso(
     reading : "default", A = 2000 N, which with 80 kg a person gives the paper's evacuation times; or "printed",
         A = 1000 N as the paper prints it, which does not. Only used where A is not given.
     A, B : strength (N) and range (m) of the social force (Eq. 2)
-    k_n, kappa, g_n : stiffness, sliding friction and damping of contacts (Eq. 3, k_t there is kappa)
+    k_n, kappa, g : stiffness, sliding friction and damping of contacts (Eq. 3, k_t there is kappa)
     tau : reaction time, s
 
     Raises
@@ -135,7 +135,7 @@ def parisi_dorso(
     """
     good = isinstance(reading, str) and reading in PARISI_READINGS
     require(good, "reading", repr(reading), "is not known", f"choose one of {', '.join(PARISI_READINGS)}")
-    return _granular(Exponential(PARISI_READINGS[reading] if A is None else A, B), k_n, kappa, g_n, tau)
+    return _granular(Exponential(PARISI_READINGS[reading] if A is None else A, B), k_n, kappa, g, tau)
 
 
 def helbing_2000(
@@ -155,20 +155,18 @@ def lambda_anisotropic(
     lam: float = 0.3,
     k_n: float = 1.2e5,  # N/m
     kappa: float = 2.4e5,  # kg/(m s)
-    g_n: float = 0.0,  # kg/s
+    g: float = 0.0,  # kg/s
     tau: float = 0.5,  # s
 ) -> Model:
     """The same with a social force that is weaker from behind (text of Lin et al. 2016; FDS+Evac, CrowdDMX).
 
     `lam` is the weight of those straight behind, 1 of those straight ahead; walls push the same from all sides.
     """
-    return _granular(Exponential(A, B), k_n, kappa, g_n, tau, vision=Lambda(lam))
+    return _granular(Exponential(A, B), k_n, kappa, g, tau, vision=Lambda(lam))
 
 
-def _granular(
-    repulsion: Exponential, k_n: float, kappa: float, g_n: float, tau: float, vision: Any = ALL_ROUND
-) -> Model:
-    pressing, friction = Hooke(k_n, g_n), Viscous(kappa)
+def _granular(repulsion: Exponential, k_n: float, kappa: float, g: float, tau: float, vision: Any = ALL_ROUND) -> Model:
+    pressing, friction = Hooke(k_n, g), Viscous(kappa)
     return checked(
         Model(Relaxation(tau), repulsion, vision, pressing, friction, repulsion, pressing, friction, Absent())
     )

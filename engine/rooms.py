@@ -3,10 +3,14 @@
 from collections.abc import Callable
 
 from engine import models
+from engine.accuracy import numerics_for
 from engine.crowd import Crowd
 from engine.errors import number, require
 from engine.scenario import Numerics, Record, Scenario, Stopping
 from engine.scene import Exit, Scene
+
+LIN_2016 = Numerics(dt=1e-3, force_tolerance=1e-3, integrator="velocity_verlet")  # Table 1; no cut is named
+PARISI_2005 = Numerics(dt=1e-4, force_tolerance=1e-3, integrator="velocity_verlet")  # Sec. 3; no cut is named
 
 
 def square_room(size: float, L: float, walk_on: float = 0.0) -> Scene:
@@ -42,9 +46,11 @@ def lin_room(
     reading: str = "RK",
     inertia: str = "sphere",
     size: float = 15.0,
-    dt: float = 1e-3,
-    force_tolerance: float = 1e-3,
-    integrator: str = "velocity_verlet",
+    numerics: str = "accurate",
+    accuracy: str = "2%",
+    dt: float | None = None,
+    force_tolerance: float | None = None,
+    integrator: str | None = None,
     patience: float = 120.0,
     time_limit: float = 1000.0,
     every: float = 0.0,
@@ -66,7 +72,10 @@ def lin_room(
     reading : what sliding does, see `models.lin_dem`
     inertia : "sphere", "disc" or "none", see `models.lin_dem`
     size : side of the room, m
-    dt, force_tolerance, integrator : see `Numerics`
+    numerics : "accurate" for those that follow from `accuracy`, "paper" for the paper's
+    accuracy : error that is tolerated: "2%" of the statistics, "1mm" or "0.1mm" of the places before chaos, see
+        `engine.accuracy`
+    dt, force_tolerance, integrator : where given they hold instead, see `Numerics`
     patience, time_limit : see `Stopping`
     every, contacts : see `Record`
 
@@ -75,11 +84,13 @@ def lin_room(
     BadInput
         If a parameter is out of its range or the crowd cannot fit.
     """
+    model = models.lin_dem(reading, A, B, phi, E, poisson, g_n, g_t, mu, tau, inertia)
+    crowd = Crowd.uniform(N, (0.0, size, 0.0, size), radius=(0.25, 0.35), mass=(60.0, 80.0), v_d=v_d)
     return Scenario(
         scene=square_room(size, L),
-        crowd=Crowd.uniform(N, (0.0, size, 0.0, size), radius=(0.25, 0.35), mass=(60.0, 80.0), v_d=v_d),
-        model=models.lin_dem(reading, A, B, phi, E, poisson, g_n, g_t, mu, tau, inertia),
-        numerics=Numerics(dt=dt, force_tolerance=force_tolerance, integrator=integrator),
+        crowd=crowd,
+        model=model,
+        numerics=numerics_for(numerics, accuracy, model, crowd, LIN_2016, every, dt, force_tolerance, integrator),
         stopping=Stopping(patience=patience, time_limit=time_limit),
         record=Record(every=every, contacts=contacts),
         seed=seed,
@@ -95,14 +106,16 @@ def parisi_room(
     B: float = 0.08,
     k_n: float = 1.2e5,
     kappa: float = 2.4e5,
-    g_n: float = 100.0,
+    g: float = 100.0,
     tau: float = 0.5,
     reading: str = "default",
     mass: float = 80.0,
     size: float = 20.0,
-    dt: float = 1e-4,
-    force_tolerance: float = 1e-3,
-    integrator: str = "velocity_verlet",
+    numerics: str = "accurate",
+    accuracy: str = "2%",
+    dt: float | None = None,
+    force_tolerance: float | None = None,
+    integrator: str | None = None,
     patience: float = 120.0,
     time_limit: float = 1000.0,
     every: float = 0.0,
@@ -119,12 +132,15 @@ def parisi_room(
     seed : number of the run; places, radii, desired speeds and initial directions follow from it
     L : width of the door, m
     A, B : strength (N) and range (m) of the social force (Eq. 2); A follows from the reading if it is not given
-    k_n, kappa, g_n : stiffness (N/m), sliding friction (kg/(m s)) and damping (kg/s) of contacts (Eq. 3)
+    k_n, kappa, g : stiffness (N/m), sliding friction (kg/(m s)) and damping (kg/s) of contacts (Eq. 3)
     tau : reaction time, s
     reading : "default" or "printed", see `models.parisi_dorso`
     mass : of everybody, kg (the paper does not say)
     size : side of the room, m
-    dt, force_tolerance, integrator : see `Numerics`
+    numerics : "accurate" for those that follow from `accuracy`, "paper" for the paper's
+    accuracy : error that is tolerated: "2%" of the statistics, "1mm" or "0.1mm" of the places before chaos, see
+        `engine.accuracy`
+    dt, force_tolerance, integrator : where given they hold instead, see `Numerics`
     patience, time_limit : see `Stopping`
     every, contacts : see `Record`
 
@@ -135,18 +151,17 @@ def parisi_room(
     """
     v_d = number("v_d", v_d, "give the desired speed in m/s")
     require(v_d >= 0.05, "v_d", v_d, "is below 0.05 m/s, by which desired speeds spread", "give a larger one")
+    model, v_ds, area = (
+        models.parisi_dorso(reading, A, B, k_n, kappa, g, tau),
+        (v_d - 0.05, v_d + 0.05),
+        (0.0, size) * 2,
+    )
+    crowd = Crowd.uniform(N, area, radius=(0.25, 0.29), mass=mass, v_d=v_ds, speed=(0.995, 1.005))
     return Scenario(
         scene=square_room(size, L, walk_on=1.0),
-        crowd=Crowd.uniform(
-            N,
-            (0.0, size, 0.0, size),
-            radius=(0.25, 0.29),
-            mass=mass,
-            v_d=(v_d - 0.05, v_d + 0.05),
-            speed=(0.995, 1.005),
-        ),
-        model=models.parisi_dorso(reading, A, B, k_n, kappa, g_n, tau),
-        numerics=Numerics(dt=dt, force_tolerance=force_tolerance, integrator=integrator),
+        crowd=crowd,
+        model=model,
+        numerics=numerics_for(numerics, accuracy, model, crowd, PARISI_2005, every, dt, force_tolerance, integrator),
         stopping=Stopping(patience=patience, time_limit=time_limit),
         record=Record(every=every, contacts=contacts),
         seed=seed,

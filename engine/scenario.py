@@ -36,7 +36,8 @@ class Numerics:
     ----------
     dt : time step, s
     force_tolerance : the social force ends, without a jump, where it has fallen to this, N
-    integrator : "velocity_verlet" (as the papers print it) or "predictor" (second order), see `engine.integrators`
+    integrator : "velocity_verlet" (as the papers print it), "predictor" (second order) or "semi_implicit" (long steps),
+        see `engine.integrators`
     skin : how much farther than they reach pairs are listed, m; 0: adapted to how fast people move, for speed
         (changes a run by rounding only)
     """
@@ -169,11 +170,15 @@ def _check_step(scenario: Scenario) -> None:
 
 
 def step_limit(scenario: Scenario) -> tuple[float, str]:
+    """Longest step that the laws of a scenario allow, s, and what sets it."""
+    return longest_step(scenario.model, scenario.crowd, scenario.numerics.integrator)
+
+
+def longest_step(model: Model, crowd: crowds.Uniform | crowds.Given, integrator: str) -> tuple[float, str]:
     """Longest step that the laws allow at a fifth of the smallest radius of overlap, s, and what sets it."""
-    radius, mass = min(scenario.crowd.radius), min(scenario.crowd.mass)
-    tolerated = share(INTEGRATORS[scenario.numerics.integrator])
-    easier = turning(scenario.model.rotation)
-    limits = plain_step_limits(scenario.model, tolerated, ASSUMED_OVERLAP * radius, radius, mass, easier)
+    radius, mass = min(crowd.radius), min(crowd.mass)
+    tolerated, easier = share(INTEGRATORS[integrator]), turning(model.rotation)
+    limits = plain_step_limits(model, tolerated, ASSUMED_OVERLAP * radius, radius, mass, easier)
     return min(zip(limits, CAUSES, strict=True))
 
 

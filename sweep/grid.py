@@ -6,8 +6,8 @@ import json
 import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from types import MappingProxyType
-from typing import Any, get_type_hints
+from types import MappingProxyType, NoneType
+from typing import Any, get_args, get_type_hints
 
 import numpy as np
 
@@ -46,7 +46,7 @@ class Grid:
         self.room = _room(room)
         self.name = _name(self.room)
         _check_names(self.name, self.room, keywords)
-        kinds = get_type_hints(self.room)
+        kinds = {name: plain_kind(hint) for name, hint in get_type_hints(self.room).items()}
         axes = {name: _axis(name, given, kinds.get(name)) for name, given in keywords.items() if _many(given)}
         constants = {n: _scalar(n, given, kinds.get(n)) for n, given in keywords.items() if n not in axes}
         self.axes: Mapping[str, tuple[Scalar, ...]] = MappingProxyType(axes)
@@ -140,6 +140,12 @@ def _check_names(room: str, function: Room, keywords: Mapping[str, Any]) -> None
 
 def _many(given: Any) -> bool:
     return isinstance(given, Iterable) and not isinstance(given, str) and getattr(given, "ndim", 1) > 0
+
+
+def plain_kind(hint: Any) -> Any:
+    """The kind of value of a keyword that may also be left to follow from others: float of `float | None`."""
+    kinds = [kind for kind in get_args(hint) if kind is not NoneType]
+    return kinds[0] if len(kinds) == 1 else hint
 
 
 def _axis(name: str, given: Any, kind: type | None) -> tuple[Scalar, ...]:

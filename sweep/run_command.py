@@ -11,7 +11,7 @@ from engine import Scenario, simulate
 from engine.errors import require
 from engine.rooms import ROOMS
 from sweep.durable import require_writable
-from sweep.grid import Room
+from sweep.grid import Room, plain_kind
 from sweep.runfile import write_run
 from sweep.schema import PARAMETERS
 
@@ -64,7 +64,7 @@ def _run_once(scenario: Scenario, output: Path | None) -> None:
 
 def options_of(room: Room) -> list[click.Parameter]:
     """One option for each keyword of a room, with its type, its default and what is known about it."""
-    kinds, words = get_type_hints(room), parameter_words(room)
+    kinds, words = {name: plain_kind(hint) for name, hint in get_type_hints(room).items()}, parameter_words(room)
     words |= {name: _with_units(*known) for name, known in PARAMETERS.items()}
     parameters = inspect.signature(room).parameters.values()
     return [_option(p.name, kinds.get(p.name, str), p.default, words.get(p.name, "")) for p in parameters]
