@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from engine.crowd import Given, Uniform
 from engine.errors import require
@@ -66,7 +66,7 @@ def numerics_for(
             found = replace(found, dt=every / math.ceil(every / found.dt - 1e-9))
     else:
         found = paper
-    given = {"dt": dt, "force_tolerance": force_tolerance, "integrator": integrator}
+    given: dict[str, Any] = {"dt": dt, "force_tolerance": force_tolerance, "integrator": integrator}
     return replace(found, **{name: value for name, value in given.items() if value is not None})
 
 

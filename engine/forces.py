@@ -185,7 +185,7 @@ def _contacts(integrator, model, people, i, j, slip, first, touch, count, stretc
             touch.counts[0] = k + 1
             touch.a[k], touch.b[k], touch.place[k] = a, b, first + p
             touch.nx[k], touch.ny[k], touch.overlap[k] = nx, ny, overlap
-            touch.slip[k] = slip[p] + v_t * stretch
+            touch.slip[k], touch.u[k] = slip[p] + v_t * stretch, v_t
             F_n = normal(model.normal, overlap, radius, mass, 0.0)
             touch.radius[k], touch.mass[k], touch.F_n[k] = radius, mass, F_n
             people.fx[a] += F_n * nx
@@ -235,7 +235,7 @@ def _at_walls(integrator, model, scene, people, near, touch, stretch, lead):
                 touch.counts[1] += 1
                 touch.a[k], touch.b[k], touch.place[k] = i, i, p
                 touch.nx[k], touch.ny[k], touch.overlap[k] = nx, ny, overlap
-                touch.slip[k] = slips[p] + v_t * stretch
+                touch.slip[k], touch.u[k] = slips[p] + v_t * stretch, v_t
                 touch.F_n[k] = normal(model.wall_normal, overlap, radius, mass, 0.0)
                 touch.radius[k], touch.mass[k] = radius, mass
                 F_n += touch.F_n[k]

@@ -65,7 +65,7 @@ class Touch(NamedTuple):
     slip: np.ndarray  # m, of the tangential spring
     J_n: np.ndarray  # N s, impulse of damping along n
     J_t: np.ndarray  # N s, impulse of friction along t
-    u: np.ndarray  # m/s, slip velocity at the end of the step
+    u: np.ndarray  # m/s, slip velocity
 
 
 @njit(cache=True)
