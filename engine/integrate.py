@@ -10,12 +10,14 @@ from engine.forces import BLOCK, ROWS, forces
 from engine.integrators import begin, correct, lead, predict, settles, share
 from engine.laws import turns
 from engine.neighbours import nobody_in_touch, rebuilt
+from engine.rest import CREEP, at_rest
 from engine.stability import step_limits
 
 FAR = 1e6  # m; whoever is farther from the origin has been thrown out of the world
 MOST_PARTS = 64  # into which a step is cut
 FIRST_SKIN, LEAST_SKIN = 0.12, 0.01  # m
 LIST_COST = 2.4  # of making lists, in visits of all pairs
+QUIET_LOOKS = 5  # until rest is tested: forces that do not balance would have set somebody in motion by then
 STRIDE = 0.2  # of the smallest radius: how far a person may move in one go
 RUNNING, ALL_OUT, BLOCKED, FROZEN, TIME_LIMIT, UNSTABLE = range(6)
 
@@ -32,6 +34,7 @@ class Rules(NamedTuple):
     turning: float  # see `engine.stability.step_limits`
     last_step: int  # the time limit
     patience: int  # steps without anybody getting out after which the exits are blocked
+    look: int  # steps between two looks whether the crowd is at rest for good; 0: never
 
 
 class Clock(NamedTuple):
@@ -45,6 +48,7 @@ class Clock(NamedTuple):
     rebuilds: int
     cuts: int  # steps that were cut
     skin: float  # m, of the present lists
+    quiet: int  # looks in a row that found everybody as good as at rest
     served: int  # for how many forces the present lists have served
     part: float  # s, length of the last part of a step
     overlap: float  # m, largest now
@@ -57,7 +61,7 @@ class Clock(NamedTuple):
 
 def begun(N: int) -> Clock:
     """The clock of N persons before the first forces."""
-    return Clock(-1, N, 0, 0, RUNNING, 0, 0, 0.0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, -1, -1)
+    return Clock(-1, N, 0, 0, RUNNING, 0, 0, 0.0, 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, -1, -1)
 
 
 class Log(NamedTuple):
@@ -91,7 +95,7 @@ def advance(integrator, model, scene, rules, people, near, touch, log, clock, un
     )
     culprit, partner = clock.culprit, clock.partner
     scratch, touching = np.empty(ROWS * BLOCK), np.empty(BLOCK + 1, np.uint32)
-    skin, served = clock.skin, clock.served
+    skin, served, quiet = clock.skin, clock.served, clock.quiet
     while step < until and outcome == RUNNING:
         parts = _parts(integrator, model, rules, overlap, speed) if step >= 0 else 1
         cuts += parts > 1
@@ -138,6 +142,11 @@ def advance(integrator, model, scene, rules, people, near, touch, log, clock, un
             outcome = BLOCKED
         elif step >= rules.last_step:
             outcome = TIME_LIMIT
+        elif rules.look > 0 and step % rules.look == 0 and scene.exits.shape[0] > 0:
+            wait = (rules.patience - (step - last_out)) * rules.dt
+            quiet = quiet + 1 if speed * wait < CREEP else 0
+            if quiet >= QUIET_LOOKS and at_rest(model, scene, people, n, near, wait):
+                outcome = FROZEN
     return (
         near,
         touch,
@@ -150,6 +159,7 @@ def advance(integrator, model, scene, rules, people, near, touch, log, clock, un
             rebuilds,
             cuts,
             skin,
+            quiet,
             served,
             part,
             overlap,

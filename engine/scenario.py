@@ -67,13 +67,16 @@ class Stopping:
     ----------
     patience : time without anybody getting out after which the exits count as blocked, s
     time_limit : s
+    at_rest : end a run as frozen as soon as it is certain that nobody will get out in time (see `engine.rest`)
     """
 
     patience: float = 120.0
     time_limit: float = 1000.0
+    at_rest: bool = True
 
     def __post_init__(self) -> None:
         _make_positive(self, "give a time above 0 s")
+        require(isinstance(self.at_rest, bool), "at_rest", repr(self.at_rest), "is not true or false", "give one")
 
 
 @dataclass(frozen=True)

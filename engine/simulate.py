@@ -18,6 +18,7 @@ from engine.scene import SceneArrays, as_arrays
 
 OUTCOMES = ("missing", "all_out", "blocked", "frozen", "time_limit", "unstable")  # their numbers are the kernel's
 PERSON_STEPS = 4_000_000  # at most between two looks at the world outside the kernel (some tenths of a second)
+LOOK = 1.0  # s, between two looks whether a crowd is at rest for good
 DEEPEST_START = 0.5  # of the smallest radius: overlap that a given crowd may begin with
 
 
@@ -186,6 +187,7 @@ def _rules(scenario: Scenario) -> Rules:
         lightest=min(scenario.crowd.mass),
         turning=turning(model.rotation),
         last_step=max(math.ceil(scenario.stopping.time_limit / dt - 1e-9), 1),
+        look=max(round(LOOK / dt), 1) if scenario.stopping.at_rest else 0,
         patience=max(math.ceil(scenario.stopping.patience / dt - 1e-9), 1),
     )
 

@@ -17,6 +17,7 @@ from engine.laws.friction import (
     Mindlin,
     MindlinReset,
     Viscous,
+    limit,
     remembers,
     sliding,
     sliding_damping,
@@ -32,10 +33,10 @@ KINDS = {  # a model's field -> the generics that its parameters must have a law
     "social": (social, social_stiffness, cut_at, reach),
     "vision": (vision, looks),
     "normal": (normal, normal_stiffness, normal_damping),
-    "sliding": (sliding, remembers, sliding_stiffness, sliding_damping),
+    "sliding": (sliding, remembers, sliding_stiffness, sliding_damping, limit),
     "wall_social": (social, social_stiffness, cut_at, reach),
     "wall_normal": (normal, normal_stiffness, normal_damping),
-    "wall_sliding": (sliding, remembers, sliding_stiffness, sliding_damping),
+    "wall_sliding": (sliding, remembers, sliding_stiffness, sliding_damping, limit),
     "rotation": (turns,),
 }
 
@@ -57,6 +58,7 @@ __all__ = [
     "cut_at",
     "drive",
     "drive_rate",
+    "limit",
     "looks",
     "normal",
     "normal_damping",

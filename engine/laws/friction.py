@@ -144,3 +144,18 @@ def _mindlin_damping(p, overlap, radius, mass):
 @sliding_damping.law(Viscous)
 def _viscous_damping(p, overlap, radius, mass):
     return p.kappa * overlap / mass
+
+
+@generic
+def limit(p, F_n):
+    """Largest force of friction at the normal force F_n, N; inf where friction vanishes with the slip velocity."""
+
+
+@limit.law(Absent, Kinetic, Coulomb, Viscous)
+def _creeps(p, F_n):
+    return math.inf
+
+
+@limit.law(Mindlin, MindlinReset)
+def _holds_up_to(p, F_n):
+    return p.mu * abs(F_n)

@@ -1,6 +1,6 @@
 """What a study says in the end: published beside found, line by line."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 MARKS = {True: "yes", False: "NO", None: "open"}
@@ -19,7 +19,12 @@ def table(verdicts: Iterable[Verdict]) -> str:
     """The verdicts as aligned text."""
     rows = [("statement", "published", "found", "holds")]
     rows += [(v.statement, v.published, v.found, MARKS[v.holds]) for v in verdicts]
-    widths = [max(len(row[column]) for row in rows) for column in range(4)]
+    return columns(rows)
+
+
+def columns(rows: Sequence[Sequence[str]]) -> str:
+    """Rows of cells as aligned text, the first one the head."""
+    widths = [max(map(len, cells)) for cells in zip(*rows, strict=True)]
     lines = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
     return "\n".join([lines[0], "-" * len(lines[0]), *lines[1:]])
 
