@@ -6,8 +6,7 @@ that the compiler vectorises, scatter, and a scalar loop over the few pairs that
 
 import math
 
-from numba import njit
-
+from engine.compiled import inlined_step_function, step_function
 from engine.integrators.choice import settles
 from engine.laws import drive, looks, normal, remembers, sliding, social, turns, vision
 
@@ -15,7 +14,7 @@ BLOCK = 512  # pairs; a constant, so that the compiler sees that the scratch row
 ROWS = 7  # of scratch: dx, dy, r_i + r_j, desired directions of i and j
 
 
-@njit(cache=True, error_model="numpy")
+@step_function
 def forces(integrator, model, scene, people, n, near, touch, stretch, lead, scratch, touching):
     """Sum all forces and torques on the first n persons into `people`.
 
@@ -39,7 +38,7 @@ def forces(integrator, model, scene, people, n, near, touch, stretch, lead, scra
     return overlap, _at_walls(integrator, model, scene, people, near, touch, stretch, lead)
 
 
-@njit(cache=True, error_model="numpy")
+@step_function
 def _driving(integrator, model, exits, people, n, s):
     """Start the sums with the driving force; the desired direction is that of the nearest exit."""
     for first in range(0, n, BLOCK):
@@ -61,7 +60,7 @@ def _driving(integrator, model, exits, people, n, s):
         people.torque[i] = 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@step_function
 def _aim(exits, people, first, count, s):
     """Desired directions of a block of persons, to rows 3 and 4 of the scratch.
 
@@ -92,7 +91,7 @@ def _aim(exits, people, first, count, s):
             s[3 * BLOCK + p], s[4 * BLOCK + p] = exits[k, 5], exits[k, 6]
 
 
-@njit(cache=True, error_model="numpy")
+@step_function
 def _between_persons(integrator, model, people, near, touch, stretch, lead, s, touching):
     deepest = 0.0
     for first in range(0, near.i.size, BLOCK):
@@ -107,22 +106,23 @@ def _between_persons(integrator, model, people, near, touch, stretch, lead, s, t
     return deepest
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined_step_function
 def _gather(model, people, i, j, count, s):
+    """Bring a block's places, radii and desired directions together; those of one i are read once."""
     x, y, radius, ex, ey = people.x, people.y, people.radius, people.ex, people.ey
+    of = i[0]
+    x_i, y_i, radius_i, ex_i, ey_i = x[of], y[of], radius[of], ex[of], ey[of]
     for p in range(count):
-        s[p] = x[i[p]] - x[j[p]]
-        s[BLOCK + p] = y[i[p]] - y[j[p]]
-        s[2 * BLOCK + p] = radius[i[p]] + radius[j[p]]
-    if looks(model.vision):
-        for p in range(count):
-            s[3 * BLOCK + p] = ex[i[p]]
-            s[4 * BLOCK + p] = ey[i[p]]
-            s[5 * BLOCK + p] = ex[j[p]]
-            s[6 * BLOCK + p] = ey[j[p]]
+        if i[p] != of:
+            of = i[p]
+            x_i, y_i, radius_i, ex_i, ey_i = x[of], y[of], radius[of], ex[of], ey[of]
+        k = j[p]
+        s[p], s[BLOCK + p], s[2 * BLOCK + p] = x_i - x[k], y_i - y[k], radius_i + radius[k]
+        if looks(model.vision):
+            s[3 * BLOCK + p], s[4 * BLOCK + p], s[5 * BLOCK + p], s[6 * BLOCK + p] = ex_i, ey_i, ex[k], ey[k]
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined_step_function
 def _repel(model, count, s):
     """Turn scratch into n_x, n_y, gap, social force on i along n, social force on j along -n."""
     for p in range(count):
@@ -138,7 +138,7 @@ def _repel(model, count, s):
         s[3 * BLOCK + p], s[4 * BLOCK + p] = on_i, on_j
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined_step_function
 def _scatter(people, i, j, count, s):
     """Add the social forces; those of one i are summed in registers, since its pairs stand together."""
     fx, fy = people.fx, people.fy
@@ -157,7 +157,7 @@ def _scatter(people, i, j, count, s):
     fy[of] += sum_y
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined_step_function
 def _contacts(integrator, model, people, i, j, slip, first, touch, count, stretch, lead, s, touching):
     """Normal and tangential forces of the pairs in touch; a spring ends with its contact."""
     touches = 0
@@ -207,7 +207,7 @@ def _contacts(integrator, model, people, i, j, slip, first, touch, count, stretc
     return deepest
 
 
-@njit(cache=True, error_model="numpy")
+@step_function
 def _at_walls(integrator, model, scene, people, near, touch, stretch, lead):
     """Forces of the walls: bodies of infinite mass and radius, each acting through its closest point."""
     walls, joints, slips = scene.walls, scene.joints, near.wall_slip
@@ -255,7 +255,7 @@ def _at_walls(integrator, model, scene, people, near, touch, stretch, lead):
     return deepest
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined_step_function
 def _from_segment(x, y, x0, y0, ux, uy, length):
     """From the closest point of a segment to (x, y), and which end that point is (-1: neither)."""
     along = (x - x0) * ux + (y - y0) * uy
@@ -264,7 +264,7 @@ def _from_segment(x, y, x0, y0, ux, uy, length):
     return x - x0 - along * ux, y - y0 - along * uy, end
 
 
-@njit(cache=True, error_model="numpy")
+@step_function
 def _counts(walls, joints, w, end, x, y, dx, dy):
     """Whether the end of wall w, seen from (x, y) at (dx, dy), acts for w.
 

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from engine.compiled import step_function
 from engine.forces import BLOCK, ROWS, forces
 from engine.integrators import begin, correct, lead, predict, settles, share
 from engine.laws import turns
@@ -41,6 +42,10 @@ class Clock(NamedTuple):
     """Where a run stands."""
 
     step: int  # -1 before the first forces are known
+    parts: int  # into which the present step is cut
+    piece: int  # of them that are done
+    moved: bool  # whether everybody has moved in the present part, so that the forces are due
+    unlisted: bool  # whether the lists have to be made before
     inside: int  # persons in the arrays
     N_out: int
     last_out: int  # step at which somebody got out
@@ -48,9 +53,9 @@ class Clock(NamedTuple):
     rebuilds: int
     cuts: int  # steps that were cut
     skin: float  # m, of the present lists
-    quiet: int  # looks in a row that found everybody as good as at rest
     served: int  # for how many forces the present lists have served
-    part: float  # s, length of the last part of a step
+    quiet: int  # looks in a row that found everybody as good as at rest
+    part: float  # s, length of the present or last part of a step
     overlap: float  # m, largest now
     speed: float  # m/s, largest now
     max_overlap: float  # m, largest ever
@@ -60,8 +65,8 @@ class Clock(NamedTuple):
 
 
 def begun(N: int) -> Clock:
-    """The clock of N persons before the first forces."""
-    return Clock(-1, N, 0, 0, RUNNING, 0, 0, 0.0, 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, -1, -1)
+    """The clock of N persons before the first forces: a step of no length, which makes the lists."""
+    return Clock(-1, 1, 0, True, True, N, 0, 0, RUNNING, 0, 0, 0.0, 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0, -1, -1)
 
 
 class Log(NamedTuple):
@@ -78,64 +83,100 @@ class Log(NamedTuple):
 def advance(integrator, model, scene, rules, people, near, touch, log, clock, until):
     """Advance a run to step `until` or its end.
 
-    `people` and `log` are changed in place; the new lists, contacts and clock are returned. A run begins with a
-    step of no length, which makes the lists and the first forces. A step that the laws do not allow at the present
-    overlap, or in which somebody would move farther than STRIDE, is cut into equal parts. A run is unstable when
-    somebody is nowhere, moves by more than half the smallest radius in a part, or is pressed deeper than that radius
-    into another, or than three quarters of it into a wall: nobody can have passed through either before.
+    `people` and `log` are changed in place; the new lists, contacts and clock are returned. A step that the laws do
+    not allow at the present overlap, or in which somebody would move farther than STRIDE, is cut into equal parts. A
+    run is unstable when somebody is nowhere, moves by more than half the smallest radius in a part, or is pressed
+    deeper than that radius into another, or than three quarters of it into a wall: nobody can have passed through
+    either before.
     """
-    step, n, turning = clock.step, clock.inside, turns(model.rotation)
-    N_out, last_out, outcome, rebuilds, cuts = clock.N_out, clock.last_out, clock.outcome, clock.rebuilds, clock.cuts
-    part, overlap, speed, max_overlap, max_speed = (
+    scratch, touching = np.empty(ROWS * BLOCK), np.empty(BLOCK + 1, np.uint32)
+    while True:
+        if clock.unlisted:
+            culprit, partner = _first_nowhere(people, clock.inside, near)
+            skin = rules.skin if rules.skin > 0.0 else _next_skin(clock, rules)
+            n = clock.inside
+            if culprit < 0:
+                near, n = rebuilt(people, n, scene.walls, near, rules.reach + skin, rules.wall_reach + skin)
+                if settles(integrator) and near.i.size + near.wall_i.size > touch.a.size:
+                    touch = nobody_in_touch(2 * (near.i.size + near.wall_i.size))
+            clock = _listed(clock, n, skin, culprit, partner)
+        if clock.outcome != RUNNING or (clock.step >= until and not clock.moved):
+            return near, touch, clock
+        clock = _walk(integrator, model, scene, rules, people, near, touch, log, clock, until, scratch, touching)
+
+
+@step_function
+def _listed(clock, n, skin, culprit, partner):
+    """The clock after the lists were made, or somebody was found nowhere."""
+    return Clock(
+        clock.step,
+        clock.parts,
+        clock.piece,
+        clock.moved,
+        False,
+        n,
+        clock.N_out,
+        clock.last_out,
+        UNSTABLE if culprit >= 0 else clock.outcome,
+        clock.rebuilds + (culprit < 0),
+        clock.cuts,
+        skin,
+        0,
+        clock.quiet,
         clock.part,
         clock.overlap,
         clock.speed,
         clock.max_overlap,
         clock.max_speed,
+        culprit,
+        partner,
     )
-    culprit, partner = clock.culprit, clock.partner
-    scratch, touching = np.empty(ROWS * BLOCK), np.empty(BLOCK + 1, np.uint32)
-    skin, served, quiet = clock.skin, clock.served, clock.quiet
-    while step < until and outcome == RUNNING:
-        parts = _parts(integrator, model, rules, overlap, speed) if step >= 0 else 1
-        cuts += parts > 1
-        crossed = 0
-        for piece in range(parts):
-            before, part = part, rules.dt / parts if step >= 0 else 0.0
+
+
+@step_function
+def _walk(integrator, model, scene, rules, people, near, touch, log, clock, until, scratch, touching):
+    """Go on as long as the lists hold, to step `until` or to the end."""
+    step, parts, piece, moved, n = clock.step, clock.parts, clock.piece, clock.moved, clock.inside
+    N_out, last_out, outcome, cuts = clock.N_out, clock.last_out, clock.outcome, clock.cuts
+    served, quiet, part, overlap, speed = clock.served, clock.quiet, clock.part, clock.overlap, clock.speed
+    max_overlap, max_speed, culprit, partner = clock.max_overlap, clock.max_speed, clock.culprit, clock.partner
+    unlisted, turning = False, turns(model.rotation)
+    while outcome == RUNNING and (moved or step < until):
+        if not moved:
+            if piece == 0:
+                parts = _parts(integrator, model, rules, overlap, speed)
+                cuts += parts > 1
+            before, part = part, rules.dt / parts
             begin(integrator, model, people, near, touch, n, before, part)
-            crossed += _cross(scene.exits, people, n, part, step * rules.dt + piece * part, log, N_out + crossed)
+            crossed = _cross(scene.exits, people, n, part, step * rules.dt + piece * part, log, N_out)
+            if crossed > 0:
+                N_out += crossed
+                last_out = step + 1
             _drift(people, n, part)
             predict(integrator, turning, people, n, part)
-            someone_walks_on = N_out + crossed > people.x.size - n
-            if (someone_walks_on and _gone(scene.exits, people, n)) or _left_their_skin(people, n, skin):
-                culprit, partner = _first_nowhere(people, n, near)
-                if culprit >= 0:
-                    outcome = UNSTABLE
-                    break
-                skin, served = rules.skin if rules.skin > 0.0 else _next_skin(skin, served, rules), 0
-                near, n = rebuilt(people, n, scene.walls, near, rules.reach + skin, rules.wall_reach + skin)
-                if settles(integrator) and near.i.size + near.wall_i.size > touch.a.size:
-                    touch = nobody_in_touch(2 * (near.i.size + near.wall_i.size))
-                rebuilds += 1
-            served += 1
-            ahead = lead(integrator) * (part if step >= 0 else rules.dt)
-            stretch = part if step >= 0 else ahead
-            between, at_wall = forces(
-                integrator, model, scene, people, n, near, touch, stretch, ahead, scratch, touching
+            moved = True
+            someone_walks_on = N_out > people.x.size - n
+            unlisted = (someone_walks_on and _gone(scene.exits, people, n) > 0) or _left_their_skin(
+                people, n, clock.skin
             )
-            correct(integrator, turning, people, n, part)
-            overlap, speed = max(between, at_wall), math.sqrt(_fastest(people, n))
-            max_overlap, max_speed = max(max_overlap, overlap), max(max_speed, speed)
-            too_fast = part * speed > 0.5 * rules.deepest
-            if too_fast or between > rules.deepest or at_wall > 0.75 * rules.deepest:
-                culprit, partner = _most_moved(people, n, near)
-                outcome = UNSTABLE
+            if unlisted:
                 break
-        step += 1
-        N_out += crossed
-        last_out = step if crossed > 0 else last_out
-        if outcome == UNSTABLE:
-            break
+        served += 1
+        ahead = lead(integrator) * (part if step >= 0 else rules.dt)
+        stretch = part if step >= 0 else ahead
+        between, at_wall = forces(integrator, model, scene, people, n, near, touch, stretch, ahead, scratch, touching)
+        correct(integrator, turning, people, n, part)
+        moved = False
+        piece += 1
+        overlap, speed = max(between, at_wall), math.sqrt(_fastest(people, n))
+        max_overlap, max_speed = max(max_overlap, overlap), max(max_speed, speed)
+        if part * speed > 0.5 * rules.deepest or between > rules.deepest or at_wall > 0.75 * rules.deepest:
+            culprit, partner = _most_moved(people, n, near)
+            outcome = UNSTABLE
+        if piece == parts or outcome == UNSTABLE:
+            step, piece = step + 1, 0
+        if piece > 0 or outcome == UNSTABLE:
+            continue
         if N_out == people.x.size:
             outcome = ALL_OUT
         elif scene.exits.shape[0] > 0 and step - last_out >= rules.patience:
@@ -147,46 +188,46 @@ def advance(integrator, model, scene, rules, people, near, touch, log, clock, un
             quiet = quiet + 1 if speed * wait < CREEP else 0
             if quiet >= QUIET_LOOKS and at_rest(model, scene, people, n, near, wait):
                 outcome = FROZEN
-    return (
-        near,
-        touch,
-        Clock(
-            step,
-            n,
-            N_out,
-            last_out,
-            outcome,
-            rebuilds,
-            cuts,
-            skin,
-            quiet,
-            served,
-            part,
-            overlap,
-            speed,
-            max_overlap,
-            max_speed,
-            culprit,
-            partner,
-        ),
+    return Clock(
+        step,
+        parts,
+        piece,
+        moved,
+        unlisted,
+        n,
+        N_out,
+        last_out,
+        outcome,
+        clock.rebuilds,
+        cuts,
+        clock.skin,
+        served,
+        quiet,
+        part,
+        overlap,
+        speed,
+        max_overlap,
+        max_speed,
+        culprit,
+        partner,
     )
 
 
-@njit(cache=True, error_model="numpy")
-def _next_skin(skin, served, rules):
+@step_function
+def _next_skin(clock, rules):
     """Skin of the next lists, m, at which making lists and visiting the pairs in the skin cost least together.
 
     The pairs grow as (D + skin)^2, D being the distance at which persons interact, and lists last for
     skin/(2 u) forces, where somebody moves by u between two; making them costs as much as LIST_COST visits of
     all pairs.
     """
-    if served == 0:
+    if clock.served == 0:
         return FIRST_SKIN
     distance = 2.0 * rules.deepest + rules.reach
-    return min(max(math.sqrt(LIST_COST * distance * skin / (2.0 * served)), LEAST_SKIN), distance)
+    return min(max(math.sqrt(LIST_COST * distance * clock.skin / (2.0 * clock.served)), LEAST_SKIN), distance)
 
 
-@njit(cache=True, error_model="numpy")
+@step_function
 def _parts(integrator, model, rules, overlap, speed):
     """Into how many equal parts the next step must be cut."""
     limits = step_limits(model, share(integrator), overlap, rules.deepest, rules.lightest, rules.turning)
@@ -199,7 +240,7 @@ def _parts(integrator, model, rules, overlap, speed):
     return parts
 
 
-@njit(cache=True, error_model="numpy")
+@step_function
 def _fastest(people, n):
     """Largest squared speed."""
     fastest = 0.0
@@ -208,7 +249,7 @@ def _fastest(people, n):
     return fastest
 
 
-@njit(cache=True, error_model="numpy")
+@step_function
 def _most_moved(people, n, near):
     """Who is pressed deepest, or fastest where nobody is pressed deeper than half the own radius."""
     culprit, partner, most = np.int64(0), np.int64(-1), 0.5
@@ -226,7 +267,7 @@ def _most_moved(people, n, near):
     return people.who[culprit], (people.who[partner] if partner >= 0 else -1)
 
 
-@njit(cache=True, error_model="numpy")
+@step_function
 def _cross(lines, people, n, dt, time, log, N_out):
     """Log who will cross an exit in this step, at the time and place interpolated in it; returns how many.
 
@@ -252,7 +293,7 @@ def _cross(lines, people, n, dt, time, log, N_out):
     return crossed
 
 
-@njit(cache=True, error_model="numpy")
+@step_function
 def _drift(people, n, dt):
     """Move everybody by dt."""
     for i in range(n):
@@ -261,7 +302,7 @@ def _drift(people, n, dt):
         people.y[i] += dt * people.vy[i]
 
 
-@njit(cache=True, error_model="numpy")
+@step_function
 def _gone(lines, people, n):
     """How many are out, and as far beyond their exit as it lets people walk on; they get `who` = -1."""
     gone = 0
@@ -275,7 +316,7 @@ def _gone(lines, people, n):
     return gone
 
 
-@njit(cache=True, error_model="numpy")
+@step_function
 def _left_their_skin(people, n, skin):
     """Whether somebody has moved half the skin since the lists were built, or is nowhere (nan)."""
     moved = False

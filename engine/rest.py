@@ -2,15 +2,14 @@
 
 import math
 
-from numba import njit
-
+from engine.compiled import step_function
 from engine.laws import limit, normal, sliding, turns
 
 CREEP = 1e-3  # m; whoever may still move farther is not at rest
 SAFETY = 2.0  # on what may still change
 
 
-@njit(cache=True, error_model="numpy")
+@step_function
 def at_rest(model, scene, people, n, near, wait):
     """Whether nothing but creep can happen within `wait` (s), if nobody moves faster than now.
 
@@ -65,7 +64,7 @@ def at_rest(model, scene, people, n, near, wait):
     return True
 
 
-@njit(cache=True, error_model="numpy")
+@step_function
 def _may_slip(pressing, rubbing, overlap, radius, mass, v_n, v_t, slip, wait):
     """Whether a contact may reach the limit of its friction, or end, within `wait`."""
     later = overlap - v_n * wait

@@ -84,10 +84,11 @@ def lin_room(
     BadInput
         If a parameter is out of its range or the crowd cannot fit.
     """
+    scene = square_room(size, L)
     model = models.lin_dem(reading, A, B, phi, E, poisson, g_n, g_t, mu, tau, inertia)
     crowd = Crowd.uniform(N, (0.0, size, 0.0, size), radius=(0.25, 0.35), mass=(60.0, 80.0), v_d=v_d)
     return Scenario(
-        scene=square_room(size, L),
+        scene=scene,
         crowd=crowd,
         model=model,
         numerics=numerics_for(numerics, accuracy, model, crowd, LIN_2016, every, dt, force_tolerance, integrator),
@@ -151,14 +152,12 @@ def parisi_room(
     """
     v_d = number("v_d", v_d, "give the desired speed in m/s")
     require(v_d >= 0.05, "v_d", v_d, "is below 0.05 m/s, by which desired speeds spread", "give a larger one")
-    model, v_ds, area = (
-        models.parisi_dorso(reading, A, B, k_n, kappa, g, tau),
-        (v_d - 0.05, v_d + 0.05),
-        (0.0, size) * 2,
-    )
-    crowd = Crowd.uniform(N, area, radius=(0.25, 0.29), mass=mass, v_d=v_ds, speed=(0.995, 1.005))
+    scene = square_room(size, L, walk_on=1.0)
+    model = models.parisi_dorso(reading, A, B, k_n, kappa, g, tau)
+    v_ds, speed = (v_d - 0.05, v_d + 0.05), (0.995, 1.005)
+    crowd = Crowd.uniform(N, (0.0, size, 0.0, size), (0.25, 0.29), mass, v_ds, speed)
     return Scenario(
-        scene=square_room(size, L, walk_on=1.0),
+        scene=scene,
         crowd=crowd,
         model=model,
         numerics=numerics_for(numerics, accuracy, model, crowd, PARISI_2005, every, dt, force_tolerance, integrator),

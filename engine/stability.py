@@ -2,8 +2,7 @@
 
 import math
 
-from numba import njit
-
+from engine.compiled import step_function
 from engine.laws import (
     drive_rate,
     normal_damping,
@@ -53,4 +52,4 @@ def plain_step_limits(model, share, overlap, radius, mass, turning):
     )
 
 
-step_limits = njit(cache=True, error_model="numpy")(plain_step_limits)  # for the kernel
+step_limits = step_function(plain_step_limits)  # for the kernel

@@ -2,8 +2,7 @@
 
 from typing import Any
 
-from numba import njit
-
+from engine.compiled import step_function
 from engine.dispatch import generic
 
 INTEGRATORS: dict[str, Any] = {}  # by the name that `Numerics.integrator` gives
@@ -39,7 +38,7 @@ def share(integrator):
     """Part of velocity Verlet's longest step with damping and friction that this integrator stands."""
 
 
-@njit(cache=True, error_model="numpy")
+@step_function
 def kick(turning, people, n, time):
     """Change the velocities by the forces over `time`."""
     for i in range(n):

@@ -13,8 +13,7 @@ on impulses; Moreau & Jean's contact dynamics), each exactly, by its law.
 import math
 from typing import NamedTuple
 
-from numba import njit
-
+from engine.compiled import step_function
 from engine.integrators.choice import begin, correct, lead, predict, settles, share
 from engine.laws import drive, drive_rate, normal_damping, sliding, sliding_damping, turns
 
@@ -61,7 +60,7 @@ def _any(integrator):
     return math.inf
 
 
-@njit(cache=True, error_model="numpy")
+@step_function
 def _kick_and_drive(model, people, n, h):
     """Velocities after the forces of position and the drive, but for the contacts."""
     faster = 1.0 / (1.0 + 0.5 * h * drive_rate(model.drive))
@@ -73,7 +72,7 @@ def _kick_and_drive(model, people, n, h):
         people.vy[i] += h * faster * people.ease[i] * (people.fy[i] + push)
 
 
-@njit(cache=True, error_model="numpy")
+@step_function
 def _settle(model, people, near, touch, h):
     """Find the impulses of all contacts; the springs keep what their laws leave them."""
     vx, vy, spin, radius = people.vx, people.vy, people.spin, people.radius
@@ -136,7 +135,7 @@ def _settle(model, people, near, touch, h):
             break
 
 
-@njit(cache=True, error_model="numpy")
+@step_function
 def _friction(law, overlap, radius, mass, F_n, slip, free, ease, h, u):
     """Impulse of friction that a contact ends with, N s, with its slip velocity, m/s, and its spring's slip, m.
 

@@ -62,7 +62,7 @@ CASES = {
     "force tolerance zero": (lambda: Numerics(force_tolerance=0.0), "force_tolerance 0"),
     "patience infinite": (lambda: rooms.lin_room(patience=INF), "patience inf"),
     "sampling negative": (lambda: rooms.lin_room(every=-1.0), "record every -1"),
-    "sampling between steps": (lambda: rooms.lin_room(every=1.5e-3), "record every 0.0015 s"),
+    "sampling between steps": (lambda: rooms.lin_room(dt=1e-3, every=1.5e-3), "record every 0.0015 s"),
     "contacts without times": (lambda: Record(contacts=True), "record contacts"),
     "radius nan": (lambda: Crowd.uniform(10, AREA, radius=NAN), "radius nan"),
     "radius zero": (lambda: Crowd.uniform(10, AREA, radius=(0.0, 0.3)), "radius (0.0, 0.3)"),
