@@ -11,6 +11,7 @@ from engine.forces import BLOCK, ROWS, forces
 from engine.integrators import begin, correct, lead, predict, settles, share
 from engine.laws import turns
 from engine.neighbours import nobody_in_touch, rebuilt
+from engine.record import sampled
 from engine.rest import CREEP, at_rest
 from engine.stability import step_limits
 
@@ -80,14 +81,14 @@ class Log(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy")
-def advance(integrator, model, scene, rules, people, near, touch, log, clock, until):
+def advance(integrator, model, scene, rules, people, near, touch, log, tape, clock, until):
     """Advance a run to step `until` or its end.
 
-    `people` and `log` are changed in place; the new lists, contacts and clock are returned. A step that the laws do
-    not allow at the present overlap, or in which somebody would move farther than STRIDE, is cut into equal parts. A
-    run is unstable when somebody is nowhere, moves by more than half the smallest radius in a part, or is pressed
-    deeper than that radius into another, or than three quarters of it into a wall: nobody can have passed through
-    either before.
+    `people` and `log` are changed in place; the new lists, contacts, tape and clock are returned. A step that the
+    laws do not allow at the present overlap, or in which somebody would move farther than STRIDE, is cut into equal
+    parts. A run is unstable when somebody is nowhere, moves by more than half the smallest radius in a part, or is
+    pressed deeper than that radius into another, or than that less the way of one part into a wall: nobody can have
+    passed through either before.
     """
     scratch, touching = np.empty(ROWS * BLOCK), np.empty(BLOCK + 1, np.uint32)
     while True:
@@ -101,8 +102,12 @@ def advance(integrator, model, scene, rules, people, near, touch, log, clock, un
                     touch = nobody_in_touch(2 * (near.i.size + near.wall_i.size))
             clock = _listed(clock, n, skin, culprit, partner)
         if clock.outcome != RUNNING or (clock.step >= until and not clock.moved):
-            return near, touch, clock
-        clock = _walk(integrator, model, scene, rules, people, near, touch, log, clock, until, scratch, touching)
+            return near, touch, tape, clock
+        due = until if tape.stride == 0 else min(until, clock.step - clock.step % tape.stride + tape.stride)
+        step = clock.step
+        clock = _walk(integrator, model, scene, rules, people, near, touch, log, clock, due, scratch, touching)
+        if tape.stride > 0 and clock.step > step and clock.step % tape.stride == 0:
+            tape = sampled(integrator, tape, scene.walls, people, clock.inside, near, touch, clock.step)
 
 
 @step_function
@@ -170,7 +175,7 @@ def _walk(integrator, model, scene, rules, people, near, touch, log, clock, unti
         piece += 1
         overlap, speed = max(between, at_wall), math.sqrt(_fastest(people, n))
         max_overlap, max_speed = max(max_overlap, overlap), max(max_speed, speed)
-        if part * speed > 0.5 * rules.deepest or between > rules.deepest or at_wall > 0.75 * rules.deepest:
+        if part * speed > 0.5 * rules.deepest or between > rules.deepest or at_wall > rules.deepest - part * speed:
             culprit, partner = _most_moved(people, n, near)
             outcome = UNSTABLE
         if piece == parts or outcome == UNSTABLE:

@@ -55,6 +55,7 @@ def lin_room(
     time_limit: float = 1000.0,
     every: float = 0.0,
     contacts: bool = False,
+    state: str = "whole",
 ) -> Scenario:
     """The room of Lin, Ma & Lo (2016), Fig. 3 and Table 1.
 
@@ -77,7 +78,7 @@ def lin_room(
         `engine.accuracy`
     dt, force_tolerance, integrator : where given they hold instead, see `Numerics`
     patience, time_limit : see `Stopping`
-    every, contacts : see `Record`
+    every, contacts, state : see `Record`
 
     Raises
     ------
@@ -93,7 +94,7 @@ def lin_room(
         model=model,
         numerics=numerics_for(numerics, accuracy, model, crowd, LIN_2016, every, dt, force_tolerance, integrator),
         stopping=Stopping(patience=patience, time_limit=time_limit),
-        record=Record(every=every, contacts=contacts),
+        record=Record(every=every, contacts=contacts, state=state),
         seed=seed,
     )
 
@@ -121,6 +122,7 @@ def parisi_room(
     time_limit: float = 1000.0,
     every: float = 0.0,
     contacts: bool = False,
+    state: str = "whole",
 ) -> Scenario:
     """The room of Parisi & Dorso (2005), Sec. 3: 20 m x 20 m, a door of 1.2 m, 200 persons.
 
@@ -143,7 +145,7 @@ def parisi_room(
         `engine.accuracy`
     dt, force_tolerance, integrator : where given they hold instead, see `Numerics`
     patience, time_limit : see `Stopping`
-    every, contacts : see `Record`
+    every, contacts, state : see `Record`
 
     Raises
     ------
@@ -162,7 +164,7 @@ def parisi_room(
         model=model,
         numerics=numerics_for(numerics, accuracy, model, crowd, PARISI_2005, every, dt, force_tolerance, integrator),
         stopping=Stopping(patience=patience, time_limit=time_limit),
-        record=Record(every=every, contacts=contacts),
+        record=Record(every=every, contacts=contacts, state=state),
         seed=seed,
     )
 

@@ -16,6 +16,7 @@ from engine.scene import Exit, Scene
 from engine.stability import CAUSES, plain_step_limits
 
 MOST_STEPS = 1e12
+STATES = ("whole", "places")  # what of each person is recorded
 ASSUMED_OVERLAP = 0.2  # of the smallest radius: what the step must be able to follow
 
 
@@ -86,11 +87,14 @@ class Record:
     Attributes
     ----------
     every : sampling interval, a multiple of dt, s; 0 for no samples
-    contacts : also who touches whom, with the springs between them
+    contacts : also who touches whom
+    state : "whole": places, velocities, spins, and the springs of the contacts; or "places" alone, which keeps files
+        small (a file has them to 1 mm) and is all that measures of contacts need
     """
 
     every: float = 0.0
     contacts: bool = False
+    state: str = "whole"
 
     def __post_init__(self) -> None:
         good = isinstance(self.every, int | float | np.number) and math.isfinite(self.every) and self.every >= 0
@@ -98,6 +102,9 @@ class Record:
         object.__setattr__(self, "every", float(self.every))
         wanted = self.every > 0 or not self.contacts
         require(wanted, "record contacts", "without `every`", "has no times to record at", "give a sampling interval")
+        known = f"choose one of {', '.join(STATES)}"
+        require(self.state in STATES, "record state", repr(self.state), "is not known", known)
+        object.__setattr__(self, "contacts", bool(self.contacts))
 
 
 @dataclass(frozen=True)

@@ -76,6 +76,11 @@ class Scene:
             require(isinstance(line, Exit), "exit", repr(line), "is no Exit", "make one with Exit(start, end, outward)")
         object.__setattr__(self, "exits", tuple(self.exits))
 
+    @property
+    def doors(self) -> tuple[Segment, ...]:
+        """The lines of the exits, (x0, y0, x1, y1) as walls have them, m."""
+        return tuple((*line.start, *line.end) for line in self.exits)
+
     @classmethod
     def box(cls, width: float, height: float) -> "Scene":
         """A closed box [0, width] x [0, height], m."""

@@ -1,6 +1,7 @@
 """Scenario -> arrays -> kernel -> Run."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,9 +13,10 @@ from engine.errors import require
 from engine.integrate import Clock, Log, Rules, advance
 from engine.integrators import INTEGRATORS
 from engine.interrupts import interrupts_held
-from engine.neighbours import Near, People, nobody_in_touch, nobody_near
+from engine.neighbours import People, nobody_in_touch, nobody_near
+from engine.record import Tape, blank
 from engine.scenario import Scenario, turning
-from engine.scene import SceneArrays, as_arrays
+from engine.scene import as_arrays
 
 OUTCOMES = ("missing", "all_out", "blocked", "frozen", "time_limit", "unstable")  # their numbers are the kernel's
 PERSON_STEPS = 4_000_000  # at most between two looks at the world outside the kernel (some tenths of a second)
@@ -30,11 +32,11 @@ class Samples:
     ----------
     time : (M,) s
     x, y : (M, N) m
-    vx, vy : (M, N) m/s
+    vx, vy : (M, N) m/s; (0, N), as spin, where only places were asked for
     spin : (M, N) rad/s
     row_size : (M,) number of contacts at each time; contacts are listed one time after the other:
     contact_i, contact_j : (contacts,) persons in touch; contact_j = -1 - w for wall w
-    contact_slip : (contacts,) m, tangential spring
+    contact_slip : (contacts,) m, tangential spring; (0,) where only places were asked for
     """
 
     time: np.ndarray
@@ -129,17 +131,25 @@ def simulate(scenario: Scenario) -> Run:
     integrator = INTEGRATORS[scenario.numerics.integrator]
     log = _empty_log(scenario.crowd.N)
     clock = integrate.begun(scenario.crowd.N)
-    near, touch, recorder = nobody_near(), nobody_in_touch(0), _Recorder(scenario)
+    near, touch, tape = nobody_near(), nobody_in_touch(0), _blank_tape(scenario, rules.last_step)
     with interrupts_held() as raise_interrupt:
-        for until in recorder.looks(rules):
-            near, touch, clock = advance(integrator, model, scene, rules, people, near, touch, log, clock, until)
+        for until in _looks(rules, scenario.crowd.N):
+            near, touch, tape, clock = advance(
+                integrator, model, scene, rules, people, near, touch, log, tape, clock, until
+            )
             raise_interrupt()
             if clock.step == 0:
                 _check_start(people, clock, rules)
-            recorder.look(scene, people, near, clock)
             if clock.outcome != integrate.RUNNING:
                 break
-    return _run(scenario, start, log, clock, recorder.samples())
+    return _run(scenario, start, log, clock, _samples(tape, scenario))
+
+
+def _looks(rules: Rules, N: int) -> Iterator[int]:
+    """Steps at which the kernel returns: often enough to be interrupted."""
+    look_every = max(PERSON_STEPS // N, 1)
+    yield 0
+    yield from range(look_every, rules.last_step + look_every, look_every)
 
 
 def _check_start(people: People, clock: Clock, rules: Rules) -> None:
@@ -196,64 +206,20 @@ def _empty_log(N: int) -> Log:
     return Log(np.full(N, np.nan), np.full(N, -1), np.full(N, np.nan), np.full(N, np.nan), np.full(N, -1))
 
 
-class _Recorder:
-    """Samples a run at the times that were asked for."""
-
-    def __init__(self, scenario: Scenario) -> None:
-        self.record, self.dt, self.N = scenario.record, scenario.numerics.dt, scenario.crowd.N
-        self.stride = round(self.record.every / self.dt)
-        self.times: list[float] = []
-        self.states: list[np.ndarray] = []
-        self.contacts: list[tuple[np.ndarray, ...]] = []
-
-    def looks(self, rules: Rules) -> Any:
-        """Steps at which the kernel returns: every sample, and often enough to be interrupted."""
-        yield 0
-        look_every = max(PERSON_STEPS // self.N, 1)
-        stride = self.stride or look_every
-        for step in range(stride, rules.last_step + stride, stride):
-            yield from range(step - stride + look_every, step, look_every)
-            yield step
-
-    def look(self, scene: SceneArrays, people: People, near: Near, clock: Clock) -> None:
-        """Take a sample if one is due."""
-        if not self.stride or clock.step % self.stride:
-            return
-        n = clock.inside
-        state = np.full((5, self.N), np.nan)
-        for row, values in enumerate((people.x, people.y, people.vx, people.vy, people.spin)):
-            state[row, people.who[:n]] = values[:n]
-        self.times.append(clock.step * self.dt)
-        self.states.append(state)
-        if self.record.contacts:
-            self.contacts.append(_contacts(scene, people, near))
-
-    def samples(self) -> Samples | None:
-        """All samples, one array for each quantity."""
-        if not self.stride:
-            return None
-        x, y, vx, vy, spin = np.stack(self.states, axis=1)
-        row_size = np.array([len(found[0]) for found in self.contacts], np.int64)
-        if self.contacts:
-            i, j, slip = (np.concatenate(parts) for parts in zip(*self.contacts, strict=True))
-        else:
-            i, j, slip = np.empty(0, np.int64), np.empty(0, np.int64), np.empty(0)
-        return Samples(np.array(self.times), x, y, vx, vy, spin, row_size, i, j, slip)
+def _blank_tape(scenario: Scenario, steps: int) -> Tape:
+    record, dt = scenario.record, scenario.numerics.dt
+    return blank(round(record.every / dt), record.contacts, record.state == "whole", scenario.crowd.N, steps)
 
 
-def _contacts(scene: SceneArrays, people: People, near: Near) -> tuple[np.ndarray, ...]:
-    """Who touches whom now: persons i < j, and person i with wall w as j = -1 - w."""
-    i, j = near.i.astype(np.int64), near.j.astype(np.int64)
-    touch = np.hypot(people.x[i] - people.x[j], people.y[i] - people.y[j]) < people.radius[i] + people.radius[j]
-    wall_i, wall = near.wall_i.astype(np.int64), near.wall.astype(np.int64)
-    x0, y0, ux, uy, length = scene.walls[wall].T
-    dx, dy = people.x[wall_i] - x0, people.y[wall_i] - y0
-    along = np.clip(dx * ux + dy * uy, 0.0, length)
-    at_wall = np.hypot(dx - along * ux, dy - along * uy) < people.radius[wall_i]
-    return (
-        np.concatenate([people.who[i[touch]], people.who[wall_i[at_wall]]]),
-        np.concatenate([people.who[j[touch]], -1 - wall[at_wall]]),
-        np.concatenate([near.slip[touch], near.wall_slip[at_wall]]),
+def _samples(tape: Tape, scenario: Scenario) -> Samples | None:
+    """What is on the tape, without its room."""
+    if not tape.stride:
+        return None
+    samples, contacts = tape.counts
+    return Samples(
+        time=tape.step[:samples] * scenario.numerics.dt,
+        **{name: getattr(tape, name)[:samples] for name in ("x", "y", "vx", "vy", "spin", "row_size")},
+        **{name: getattr(tape, name)[:contacts] for name in ("contact_i", "contact_j", "contact_slip")},
     )
 
 

@@ -12,6 +12,8 @@ from sweep import schema
 from sweep.durable import replace_durably
 from sweep.schema import Variable
 
+TOGETHER = 8  # persons in one chunk of a file
+
 
 def write_run(run: Run, path: Path | str) -> None:
     """Write a run as netCDF4; equal runs make equal files, byte for byte.
@@ -74,7 +76,29 @@ def _write_variable(file: netCDF4.Dataset, variable: Variable, values: np.ndarra
     for name, size in zip(variable.dims, values.shape, strict=True):
         if name not in file.dimensions:
             file.createDimension(name, size)
-    stored = file.createVariable(variable.name, variable.dtype, variable.dims, zlib=True, complevel=1, shuffle=True)
-    timed = variable.dims[0] == "sample" and variable.name != "time"
-    stored.setncatts(_attributes(variable) | ({"coordinates": "time"} if timed else {}))
+    attributes = _attributes(variable)
+    if variable.dims[0] == "sample" and variable.name != "time":
+        attributes["coordinates"] = "time"
+    fill, kind = None, variable.dtype
+    if variable.resolution:
+        values, fill, kind = schema.packed(values, variable.resolution), schema.NOTHING, "i4"
+        attributes["scale_factor"] = variable.resolution
+    chunks = _chunks(variable, values.shape)
+    stored = file.createVariable(
+        variable.name,
+        kind,
+        variable.dims,
+        zlib=True,
+        complevel=1,
+        shuffle=True,
+        fill_value=fill,
+        chunksizes=chunks,
+    )
+    stored.setncatts(attributes)
+    stored.set_auto_maskandscale(False)
     stored[:] = values
+
+
+def _chunks(variable: Variable, shape: tuple[int, ...]) -> tuple[int, int] | None:
+    """A few persons at all times together: what changes little from time to time packs well."""
+    return (shape[0], min(shape[1], TOGETHER)) if variable.dims == schema.STATE and all(shape) else None

@@ -12,8 +12,10 @@ import numpy as np
 
 from engine import FINGERPRINT, OUTCOMES, Run, Scenario
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 CONVENTIONS = "CF-1.11"
+MM = 1e-3  # m, to which places alone are stored; a moving person is seen to 1 % of its width
+NOTHING = np.int32(-(2**31))  # in packed values
 MISSING = OUTCOMES.index("missing")
 FLAGS = {"flag_values": np.arange(len(OUTCOMES), dtype=np.int8), "flag_meanings": " ".join(OUTCOMES)}
 
@@ -21,7 +23,8 @@ FLAGS = {"flag_values": np.arange(len(OUTCOMES), dtype=np.int8), "flag_meanings"
 class Variable(NamedTuple):
     """One variable of a run file, and of the gathered dataset if it has a value to pad with.
 
-    Dimensions: `run` (length 1), `exit` (persons who left, in order), `person`, `sample`, `contact`.
+    Dimensions: `run` (length 1), `exit` (persons who left, in order), `person`, `sample`, `contact`, `wall`, `door`,
+    `end` (x0, y0, x1, y1 of a line).
     """
 
     name: str
@@ -33,6 +36,7 @@ class Variable(NamedTuple):
     pad: float | int | None = None  # in the gathered dataset, where there is none
     attrs: Mapping[str, Any] = MappingProxyType({})
     counts: str = ""  # CF contiguous ragged arrays: the dimension whose elements are counted
+    resolution: float = 0.0  # where above 0, a file holds whole multiples of it (CF packed data, scale_factor)
 
     def attributes(self) -> dict[str, Any]:
         """What the variable says about itself wherever it stands."""
@@ -74,6 +78,8 @@ VARIABLES = (
     Variable("vx0", PERSON, "f8", "m s-1", "x component of the velocity at the start", "start.vx"),
     Variable("vy0", PERSON, "f8", "m s-1", "y component of the velocity at the start", "start.vy"),
     Variable("spin0", PERSON, "f8", "rad s-1", "angular velocity at the start", "start.spin"),
+    Variable("wall", ("wall", "end"), "f8", "m", "ends of each wall: x0, y0, x1, y1", "scenario.scene.walls"),
+    Variable("door", ("door", "end"), "f8", "m", "ends of each exit's line: x0, y0, x1, y1", "scenario.scene.doors"),
     Variable("time", ("sample",), "f8", "s", "time", "samples.time"),
     Variable("x", STATE, "f4", "m", "x, nan after leaving", "samples.x"),
     Variable("y", STATE, "f4", "m", "y, nan after leaving", "samples.y"),
@@ -117,6 +123,7 @@ PARAMETERS = {  # keywords of rooms: units and long_name of a coordinate
     "patience": ("s", "time without anybody leaving after which exits count as blocked"),
     "time_limit": ("s", "time at which a run is ended"),
     "every": ("s", "sampling interval"),
+    "state": ("1", "what of each person is recorded: whole or places"),
 }
 RANK = {"units": "1", "long_name": "rank in the order of leaving"}
 
@@ -127,6 +134,9 @@ def run_key(scenario: Scenario) -> str:
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
 
+WHOLE_STATE = {"vx", "vy", "spin", "contact_slip"}  # not recorded with places alone
+
+
 def recorded(run: Run) -> tuple[Variable, ...]:
     """The variables that this run has."""
     absent: set[str] = set()
@@ -134,14 +144,37 @@ def recorded(run: Run) -> tuple[Variable, ...]:
         absent |= {"sample", "contact"}
     elif not run.scenario.record.contacts:
         absent |= {"contact"}
-    return tuple(v for v in VARIABLES if not absent.intersection((*v.dims, v.counts)))
+    have = (v for v in VARIABLES if not absent.intersection((*v.dims, v.counts)))
+    if run.scenario.record.state == "whole":
+        return tuple(have)
+    return tuple(_rounded(v) if v.name in ("x", "y") else v for v in have if v.name not in WHOLE_STATE)
+
+
+def _rounded(place: Variable) -> Variable:
+    """A place that is stored to 1 mm."""
+    return place._replace(dtype="f8", resolution=MM)
 
 
 def fact(run: Run, variable: Variable) -> np.ndarray:
     """The values of a variable, of its type and with its dimensions."""
     value = attrgetter(variable.source)(run)
     value = OUTCOMES.index(value) if variable.name == "outcome" else value
-    return np.array(value, dtype=variable.dtype, ndmin=1)
+    values = np.array(value, dtype=variable.dtype, ndmin=1)
+    if variable.resolution:
+        return unpacked(packed(values, variable.resolution), variable.resolution)
+    return values.reshape(-1, 4) if variable.dims[-1] == "end" else values  # even where there are no walls
+
+
+def packed(values: np.ndarray, resolution: float) -> np.ndarray:
+    """Whole multiples of the resolution, NOTHING for nan and for what is out of all bounds."""
+    multiples = np.rint(values / resolution)
+    good = np.abs(multiples) < -float(NOTHING)
+    return np.where(good, multiples, NOTHING).astype(np.int32)
+
+
+def unpacked(multiples: np.ndarray, resolution: float) -> np.ndarray:
+    """What a reader makes of them: float64, nan for NOTHING."""
+    return np.where(multiples == NOTHING, np.nan, multiples * resolution)
 
 
 def run_attributes(run: Run) -> dict[str, Any]:

@@ -1,0 +1,128 @@
+"""What is recorded is what was there, and recording changes nothing."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from engine import BadInput, Record, record, rooms, simulate
+from studies import measures
+from sweep import read_run, write_run
+
+PARISI = rooms.parisi_room(v_d=4.0, N=60, seed=3, size=8.0, dt=0.01)
+LIN = rooms.lin_room(v_d=1.4, N=40, seed=3, size=6.0, time_limit=15.0, numerics="paper")
+BOTH = pytest.mark.parametrize("scenario", [PARISI, LIN], ids=["semi_implicit", "velocity_verlet"])
+
+
+def recorded(scenario, **wanted):
+    return simulate(replace(scenario, record=Record(every=0.02, **wanted)))
+
+
+@BOTH
+def test_recording_changes_no_run(scenario):
+    plain = simulate(scenario)
+    assert plain.N_out > 0
+    for run in (recorded(scenario, contacts=True), recorded(scenario, contacts=True, state="places")):
+        assert run.exit_time.tobytes() == plain.exit_time.tobytes()
+        assert run.exit_person.tobytes() == plain.exit_person.tobytes()
+        assert (run.steps, run.rebuilds, run.max_overlap) == (plain.steps, plain.rebuilds, plain.max_overlap)
+
+
+def brute_contacts(run, k):
+    """Pairs in touch at sample k, and persons at walls, over all pairs of stored places."""
+    x, y, r = run.samples.x[k], run.samples.y[k], run.start.radius
+    apart = np.hypot(x[:, None] - x, y[:, None] - y)
+    found = {(i, j) for i, j in zip(*np.nonzero(apart < r[:, None] + r), strict=True) if i < j}
+    for w, (x0, y0, x1, y1) in enumerate(run.scenario.scene.walls):
+        along = np.clip(((x - x0) * (x1 - x0) + (y - y0) * (y1 - y0)) / ((x1 - x0) ** 2 + (y1 - y0) ** 2), 0, 1)
+        gap = np.hypot(x - x0 - along * (x1 - x0), y - y0 - along * (y1 - y0)) - r
+        found |= {(i, -1 - w) for i in np.flatnonzero(gap < 0)}
+    return found
+
+
+@BOTH
+def test_contacts_are_those_of_all_pairs(scenario):
+    run = recorded(scenario, contacts=True)
+    ends = np.cumsum(run.samples.row_size)
+    kinds = {"pair": 0, "wall": 0}
+    for k, end in enumerate(ends):
+        rows = slice(end - run.samples.row_size[k], end)
+        i, j = run.samples.contact_i[rows], run.samples.contact_j[rows]
+        listed = {(min(a, b), max(a, b)) if b >= 0 else (a, b) for a, b in zip(i.tolist(), j.tolist(), strict=True)}
+        assert len(listed) == i.size, "a contact is listed twice"
+        assert listed == brute_contacts(run, k), f"sample {k}"
+        kinds["pair"] += (j >= 0).sum()
+        kinds["wall"] += (j < 0).sum()
+    assert min(kinds.values()) > 100
+    assert run.samples.contact_slip.size == run.samples.contact_i.size
+
+
+def test_samples_stand_at_whole_multiples_of_the_interval():
+    run = recorded(PARISI)
+    assert run.samples.time == pytest.approx(0.02 * np.arange(run.samples.time.size))
+    assert run.end_time - 0.02 <= run.samples.time[-1] <= run.end_time + PARISI.numerics.dt
+
+
+def test_a_tape_that_grows_holds_what_a_long_one_holds(monkeypatch):
+    long = recorded(PARISI, contacts=True).samples
+    monkeypatch.setattr(record, "ROOM", 1)
+    grown = recorded(PARISI, contacts=True).samples
+    for name, values in vars(long).items():
+        assert np.array_equal(getattr(grown, name), values, equal_nan=True), name
+
+
+def test_nothing_but_what_is_asked_for_is_recorded():
+    run = recorded(PARISI, contacts=True, state="places")
+    whole = recorded(PARISI, contacts=True)
+    assert np.array_equal(run.samples.x, whole.samples.x, equal_nan=True)
+    assert np.array_equal(run.samples.contact_j, whole.samples.contact_j)
+    for name in ("vx", "vy", "spin", "contact_slip"):
+        assert getattr(run.samples, name).size == 0
+        assert getattr(whole.samples, name).size > 0
+    assert recorded(PARISI, state="places").samples.contact_i.size == 0
+
+
+def test_an_unknown_state_is_refused():
+    with pytest.raises(BadInput, match="record state 'all' is not known: choose one of whole, places"):
+        Record(every=0.1, state="all")
+
+
+@pytest.fixture(scope="module")
+def clogged():
+    scenario = rooms.parisi_room(v_d=4.0, seed=1, every=0.02, contacts=True, state="places")
+    return simulate(scenario)
+
+
+def test_a_run_of_200_persons_makes_a_file_below_3_megabytes(clogged, tmp_path):
+    write_run(clogged, tmp_path / "run.nc")
+    assert clogged.samples.time.size > 3000
+    assert (tmp_path / "run.nc").stat().st_size < 3e6
+    ds = read_run(tmp_path / "run.nc")
+    assert np.array_equal(np.isnan(ds.x), np.isnan(clogged.samples.x))
+    assert np.nanmax(np.abs(ds.y.values - clogged.samples.y)) <= 0.5e-3 + 1e-9
+    assert not {"vx", "spin", "contact_slip"} & set(ds.variables)
+    assert ds.wall.values.tolist() == [list(wall) for wall in clogged.scenario.scene.walls]
+    assert ds.door.values.tolist() == [[20.0, 9.4, 20.0, 10.6]]
+
+
+def test_measures_find_the_clusters_that_places_at_full_precision_make(clogged, tmp_path):
+    """The largest cluster at every hundredth sample, by flooding the brute-force contacts of those inside."""
+    write_run(clogged, tmp_path / "run.nc")
+    largest = measures.granular_clusters(read_run(tmp_path / "run.nc")).largest_cluster.values
+    left = np.full(clogged.N, np.inf)
+    left[clogged.exit_person] = clogged.exit_time
+    for k in range(0, largest.size, 100):
+        inside = left > clogged.samples.time[k]
+        pairs = [(i, j) for i, j in brute_contacts(clogged, k) if j >= 0 and inside[i] and inside[j]]
+        assert largest[k] == largest_flooded(pairs)
+    assert largest.max() > 10
+
+
+def largest_flooded(pairs):
+    group = {person: {person} for pair in pairs for person in pair}
+    for i, j in pairs:
+        if group[i] is not group[j]:
+            joined = group[i] | group[j]
+            for person in joined:
+                group[person] = joined
+    return max(map(len, group.values()), default=0)
