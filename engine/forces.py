@@ -8,7 +8,7 @@ import math
 
 from engine.compiled import inlined_step_function, step_function
 from engine.integrators.choice import settles
-from engine.laws import drive, looks, normal, remembers, sliding, social, turns, vision
+from engine.laws import drive, looks, normal, remembers, sliding, social, stiff, turns, vision
 
 BLOCK = 512  # pairs; a constant, so that the compiler sees that the scratch rows do not overlap
 ROWS = 7  # of scratch: dx, dy, r_i + r_j, desired directions of i and j
@@ -18,7 +18,8 @@ ROWS = 7  # of scratch: dx, dy, r_i + r_j, desired directions of i and j
 def forces(integrator, model, scene, people, n, near, touch, stretch, lead, scratch, touching):
     """Sum all forces and torques on the first n persons into `people`.
 
-    For an integrator that settles velocities itself: only the forces of position, and all contacts into `touch`.
+    For an integrator that settles velocities itself: neither the drive nor what depends on velocity in contacts of
+    stiff friction, which go into `touch`.
 
     Parameters
     ----------
@@ -180,7 +181,7 @@ def _contacts(integrator, model, people, i, j, slip, first, touch, count, stretc
         v_t = uy * nx - ux * ny
         if turns(model.rotation):
             v_t -= people.radius[a] * people.spin[a] + people.radius[b] * people.spin[b]
-        if settles(integrator):
+        if settles(integrator) and stiff(model.sliding):
             k = touch.counts[0]
             touch.counts[0] = k + 1
             touch.a[k], touch.b[k], touch.place[k] = a, b, first + p
@@ -230,7 +231,7 @@ def _at_walls(integrator, model, scene, people, near, touch, stretch, lead):
             if turns(model.rotation):
                 v_t -= radius * people.spin[i]
             mass = people.mass[i]
-            if settles(integrator):
+            if settles(integrator) and stiff(model.wall_sliding):
                 k = touch.counts[0] + touch.counts[1]
                 touch.counts[1] += 1
                 touch.a[k], touch.b[k], touch.place[k] = i, i, p

@@ -107,7 +107,7 @@ def advance(integrator, model, scene, rules, people, near, touch, log, tape, clo
         step = clock.step
         clock = _walk(integrator, model, scene, rules, people, near, touch, log, clock, due, scratch, touching)
         if tape.stride > 0 and clock.step > step and clock.step % tape.stride == 0:
-            tape = sampled(integrator, tape, scene.walls, people, clock.inside, near, touch, clock.step)
+            tape = sampled(integrator, model, tape, scene.walls, people, clock.inside, near, touch, clock.step)
 
 
 @step_function
@@ -235,7 +235,9 @@ def _next_skin(clock, rules):
 @step_function
 def _parts(integrator, model, rules, overlap, speed):
     """Into how many equal parts the next step must be cut."""
-    limits = step_limits(model, share(integrator), overlap, rules.deepest, rules.lightest, rules.turning)
+    limits = step_limits(
+        model, share(integrator), settles(integrator), overlap, rules.deepest, rules.lightest, rules.turning
+    )
     longest = min(min(limits[0], limits[1]), limits[2])
     if speed > 0.0:
         longest = min(longest, STRIDE * rules.deepest / speed)

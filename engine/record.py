@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 
 from engine.integrators.choice import settles
+from engine.laws import stiff
 
 ROOM = 1 << 21  # values of each quantity on a new tape, at most; memory that is never written to costs nothing
 GROWTH = 2
@@ -54,7 +55,7 @@ def blank(stride: int, contacts: bool, whole: bool, N: int, steps: int) -> Tape:
 
 
 @njit(cache=True, error_model="numpy")
-def sampled(integrator, tape, walls, people, n, near, touch, step):
+def sampled(integrator, model, tape, walls, people, n, near, touch, step):
     """The tape with the state of the first n persons at this step; a longer one if it was full."""
     k = tape.counts[0]
     if k == tape.step.size:
@@ -71,7 +72,7 @@ def sampled(integrator, tape, walls, people, n, near, touch, step):
         while tape.counts[1] + near.i.size + near.wall_i.size > tape.contact_i.size:
             tape = _with_more_contacts(tape)
         before = tape.counts[1]
-        if settles(integrator):  # the last forces have listed who touches whom
+        if settles(integrator) and stiff(model.sliding):  # the last forces have listed who touches whom
             _note_touch(tape, people, near, touch)
         else:
             _note_pairs(tape, people, near)

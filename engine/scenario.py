@@ -10,7 +10,7 @@ import numpy as np
 from engine import crowd as crowds
 from engine import laws, models
 from engine.errors import number, require
-from engine.integrators import INTEGRATORS, share
+from engine.integrators import INTEGRATORS, settles, share
 from engine.models import Model
 from engine.scene import Exit, Scene
 from engine.stability import CAUSES, plain_step_limits
@@ -187,8 +187,9 @@ def step_limit(scenario: Scenario) -> tuple[float, str]:
 def longest_step(model: Model, crowd: crowds.Uniform | crowds.Given, integrator: str) -> tuple[float, str]:
     """Longest step that the laws allow at a fifth of the smallest radius of overlap, s, and what sets it."""
     radius, mass = min(crowd.radius), min(crowd.mass)
-    tolerated, easier = share(INTEGRATORS[integrator]), turning(model.rotation)
-    limits = plain_step_limits(model, tolerated, ASSUMED_OVERLAP * radius, radius, mass, easier)
+    method, easier = INTEGRATORS[integrator], turning(model.rotation)
+    overlap = ASSUMED_OVERLAP * radius
+    limits = plain_step_limits(model, share(method), settles(method), overlap, radius, mass, easier)
     return min(zip(limits, CAUSES, strict=True))
 
 

@@ -10,12 +10,13 @@ from engine.laws import (
     sliding_damping,
     sliding_stiffness,
     social_stiffness,
+    stiff,
 )
 
 CAUSES = ("stiffness of the contacts", "damping of the contacts", "friction of the contacts", "drive's tau")
 
 
-def plain_step_limits(model, share, overlap, radius, mass, turning):
+def plain_step_limits(model, share, settled, overlap, radius, mass, turning):
     """Longest stable time steps, s, one for each of CAUSES.
 
     For springs 2/omega of the stiffest mode of a triangular packing, omega^2 = 3 k/m of one pair; the tangential
@@ -24,7 +25,8 @@ def plain_step_limits(model, share, overlap, radius, mass, turning):
 
     Parameters
     ----------
-    share : part of the limit of damping that the integrator stands (0.5 to 1, or inf if it solves for damping)
+    share : part of the limit of damping that the integrator stands
+    settled : whether the integrator solves for damping and friction where friction is stiff
     overlap : at which the laws are taken, m
     radius, mass : of the smallest and of the lightest person, m, kg
     turning : 1 + mass radius^2/inertia: how much easier a surface is to move than a body (1 if nobody turns)
@@ -35,13 +37,15 @@ def plain_step_limits(model, share, overlap, radius, mass, turning):
     pair_slip = sliding_stiffness(model.sliding, overlap, 0.5 * radius) * turning
     wall_slip = sliding_stiffness(model.wall_sliding, overlap, radius) * turning
     spring = max(max(pair_spring, pair_slip) / (0.5 * mass), max(wall_spring, wall_slip) / mass)
+    between = 0.0 if settled and stiff(model.sliding) else 1.0
+    at_wall = 0.0 if settled and stiff(model.wall_sliding) else 1.0
     damping = max(
-        normal_damping(model.normal, overlap, 0.5 * radius, 0.5 * mass),
-        normal_damping(model.wall_normal, overlap, radius, mass),
+        between * normal_damping(model.normal, overlap, 0.5 * radius, 0.5 * mass),
+        at_wall * normal_damping(model.wall_normal, overlap, radius, mass),
     )
     friction = turning * max(
-        sliding_damping(model.sliding, overlap, 0.5 * radius, 0.5 * mass),
-        sliding_damping(model.wall_sliding, overlap, radius, mass),
+        between * sliding_damping(model.sliding, overlap, 0.5 * radius, 0.5 * mass),
+        at_wall * sliding_damping(model.wall_sliding, overlap, radius, mass),
     )
     drive = drive_rate(model.drive)
     return (

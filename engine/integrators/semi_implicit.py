@@ -7,10 +7,10 @@ Velocities stand between the steps, places and forces of position (social force,
 The drive is taken by the trapezoid rule and stays second order. Damping and friction are taken at the new
 velocity (implicit Euler), so that no step is too long for them and a person who is pushed against friction creeps as
 fast as the laws say. The contacts are solved one after the other with what is known of the others (Gauss-Seidel
-on impulses; Moreau & Jean's contact dynamics), each exactly, by its law.
+on impulses; Moreau & Jean's contact dynamics), each exactly, by its law. Contacts whose friction is a spring are
+soft enough to be taken as they are, at the old velocity.
 """
 
-import math
 from typing import NamedTuple
 
 from engine.compiled import step_function
@@ -56,8 +56,8 @@ def _solves(integrator):
 
 
 @share.law(SemiImplicit)
-def _any(integrator):
-    return math.inf
+def _half_of_it(integrator):
+    return 0.5
 
 
 @step_function
@@ -70,6 +70,9 @@ def _kick_and_drive(model, people, n, h):
     for i in range(n):
         push = drive(model.drive, people.mass[i], people.v_d[i], people.ey[i], people.vy[i])
         people.vy[i] += h * faster * people.ease[i] * (people.fy[i] + push)
+    if turns(model.rotation):
+        for i in range(n):
+            people.spin[i] += h * people.torque[i] * people.ease_to_turn[i]
 
 
 @step_function

@@ -22,6 +22,7 @@ from engine.laws.friction import (
     sliding,
     sliding_damping,
     sliding_stiffness,
+    stiff,
 )
 from engine.laws.pressing import Hertz, Hooke, normal, normal_damping, normal_stiffness
 from engine.laws.repulsion import Exponential, cut_at, reach, social, social_stiffness
@@ -33,10 +34,10 @@ KINDS = {  # a model's field -> the generics that its parameters must have a law
     "social": (social, social_stiffness, cut_at, reach),
     "vision": (vision, looks),
     "normal": (normal, normal_stiffness, normal_damping),
-    "sliding": (sliding, remembers, sliding_stiffness, sliding_damping, limit),
+    "sliding": (sliding, remembers, stiff, sliding_stiffness, sliding_damping, limit),
     "wall_social": (social, social_stiffness, cut_at, reach),
     "wall_normal": (normal, normal_stiffness, normal_damping),
-    "wall_sliding": (sliding, remembers, sliding_stiffness, sliding_damping, limit),
+    "wall_sliding": (sliding, remembers, stiff, sliding_stiffness, sliding_damping, limit),
     "rotation": (turns,),
 }
 
@@ -70,6 +71,7 @@ __all__ = [
     "sliding_stiffness",
     "social",
     "social_stiffness",
+    "stiff",
     "turns",
     "vision",
 ]

@@ -147,6 +147,21 @@ def _viscous_damping(p, overlap, radius, mass):
 
 
 @generic
+def stiff(p):
+    """Whether friction follows the slip velocity so closely that it has to be solved for (a constant of the type)."""
+
+
+@stiff.law(Absent, Mindlin, MindlinReset)
+def _soft(p):
+    return False
+
+
+@stiff.law(Kinetic, Coulomb, Viscous)
+def _stiff(p):
+    return True
+
+
+@generic
 def limit(p, F_n):
     """Largest force of friction at the normal force F_n, N; inf where friction vanishes with the slip velocity."""
 
