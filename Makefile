@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
 
-.PHONY: help setup bench stress test lint constraints clean
+.PHONY: help setup bench stress study-accuracy test lint constraints clean
 .DEFAULT_GOAL := help
 
 help:  ## this list
@@ -31,6 +31,9 @@ $(READY): pyproject.toml constraints.txt
 
 study-%: $(READY)  ## reproduce a figure: make study-fig10 [QUICK=1] [JOBS=2]
 	@$(BIN)/jamsweep study $* --jobs $(JOBS) $(if $(QUICK),--quick)
+
+study-accuracy: $(READY)  ## error, bias and time of the numerics: make study-accuracy [QUICK=1] [JOBS=2] [DOCS=1] [MORE=4]
+	@$(BIN)/python -m studies.accuracy --jobs $(JOBS) $(if $(QUICK),--quick) $(if $(DOCS),--docs) $(if $(MORE),--more $(MORE))
 
 bench: $(READY)  ## this engine beside its peers: make bench [QUICK=1]; $(BIN)/pip install -e '.[bench]' brings them
 	@$(BIN)/python -m studies.bench $(if $(QUICK),--quick) $(if $(DOCS),--docs)

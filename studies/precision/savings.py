@@ -1,0 +1,93 @@
+"""What skipping saves: CPU time with and without, in one jam for all."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from statistics import median
+from typing import NamedTuple
+
+from engine import Record, Scenario, Scene, Stopping, laws, models
+from engine.rooms import ROOMS
+from studies.precision.clock import at, compile_kernel, timed
+
+ROOM, V_D, N, JAMMED, HALF_OUT = "lin_room", 1.2, 200, 10.0, 200.0  # room, m/s, persons, s, s
+FAR = 40  # wall pieces out of reach
+STILL = models.lin_dem(inertia="none")
+BLIND = models.lin_dem()._replace(vision=laws.Absent())
+SMOOTH = models.lin_dem()._replace(sliding=laws.Absent(), wall_sliding=laws.Absent())
+BARE = STILL._replace(vision=laws.Absent(), sliding=laws.Absent(), wall_sliding=laws.Absent())
+
+
+class Saving(NamedTuple):
+    """CPU time with something, over that without it or with it skipped."""
+
+    what: str
+    ratio: float
+    remark: str = ""
+
+
+class Pair(NamedTuple):
+    """Two scenarios that take turns."""
+
+    what: str
+    with_it: Scenario
+    without: Scenario
+    remark: str = ""
+
+
+def measure(stretch: float, repeats: int, compiling: bool) -> list[Saving]:
+    """All ratios: medians of `repeats` turns over `stretch` simulated s.
+
+    Parameters
+    ----------
+    compiling : also what needs kernels of its own (half a minute each the first time)
+    """
+    jam = replace(at(ROOMS[ROOM](v_d=V_D, N=N), JAMMED), stopping=Stopping(patience=stretch, time_limit=stretch))
+    return [_saving(pair, repeats) for pair in _pairs(jam, compiling)]
+
+
+def _saving(pair: Pair, repeats: int) -> Saving:
+    for scenario in pair[1:3]:
+        compile_kernel(scenario)
+    turns = [[per_step(scenario) for scenario in pair[1:3]] for _ in range(repeats)]
+    return Saving(pair.what, median(a for a, _ in turns) / median(b for _, b in turns), pair.remark)
+
+
+def per_step(scenario: Scenario) -> float:
+    """CPU seconds of a step."""
+    spent, run = timed(scenario)
+    return spent / run.steps
+
+
+def _pairs(jam: Scenario, compiling: bool) -> Iterator[Pair]:
+    if compiling:
+        yield Pair("bodies that turn", jam, replace(jam, model=STILL), 'inertia "none"')
+        yield Pair("vision", jam, replace(jam, model=BLIND), "law absent")
+        yield Pair("sliding", jam, replace(jam, model=SMOOTH), "law absent; the crowd moves more freely")
+        yield Pair("turning, vision and sliding", jam, replace(jam, model=BARE), "laws absent")
+    walls = replace(jam, scene=with_far_walls(jam.scene))
+    yield Pair(f"{FAR} wall pieces out of reach", walls, jam, "1: they cost nothing")
+    later = replace(at(ROOMS[ROOM](v_d=V_D, N=N), HALF_OUT, N // 2), stopping=jam.stopping)
+    yield Pair("the departed", jam, later, f"steps of {jam.crowd.N} persons over steps of {later.crowd.N}")
+    for skin in (0.01, 0.5):
+        fixed = replace(jam, numerics=replace(jam.numerics, skin=skin))
+        yield Pair(f"lists with a skin of {skin:g} m", fixed, jam, "over the adapted skin")
+    for tolerance in (1e-6, 1e-3, 1.0):
+        other = replace(jam, numerics=replace(jam.numerics, force_tolerance=tolerance))
+        usual = f"over {jam.numerics.force_tolerance:g} N"
+        yield Pair(f"social force down to {tolerance:g} N", other, jam, f"{usual}; reach {reach(other):.2f} m")
+    for every, contacts in ((0.1, False), (0.1, True), (0.02, True)):
+        words = f"recording every {every:g} s{' with contacts' if contacts else ''}"
+        yield Pair(words, replace(jam, record=Record(every, contacts)), jam, "over no recording")
+
+
+def reach(scenario: Scenario) -> float:
+    """Gap at which the social force ends, m."""
+    law, tolerance = scenario.model.social, scenario.numerics.force_tolerance
+    return law.B * math.log(law.A / tolerance)
+
+
+def with_far_walls(scene: Scene) -> Scene:
+    """The scene and short walls beyond anybody's reach."""
+    far = tuple((60.0, 2.0 * k, 61.0, 2.0 * k) for k in range(FAR))
+    return Scene((*scene.walls, *far), scene.exits)
