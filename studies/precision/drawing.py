@@ -70,12 +70,12 @@ def _panel(axis: Axes, found: Found, tolerances: list[float]) -> None:
         axis.plot(p.cost, p.error, marker, ms=3.5, color=colour, mec="white", mew=0.3, alpha=0.9)
     front = [points[k] for k in pareto([(p.cost, p.error) for p in points])]
     axis.plot([p.cost for p in front], [p.error for p in front], color=figures.GREY, lw=1, zorder=0)
-    for k, (name, setting) in enumerate(chosen(found.case.room).items()):
+    for name, setting in chosen(found.case.room).items():
         p = found.at(setting)
         axis.plot(p.cost, p.error, "o", ms=9, mfc="none", mec="black", mew=0.9)
-        shift = (9, 5) if name != PAPER else (9, -9)
+        shift, side = ((8, 5), "left") if name != PAPER else ((-7, -11), "right")
         text = name.replace("%", " %").replace("mm", " mm")
-        axis.annotate(text, (p.cost, p.error), xytext=shift, textcoords="offset points", fontsize=7, zorder=5 + k)
+        axis.annotate(text, (p.cost, p.error), shift, textcoords="offset points", ha=side, fontsize=7, zorder=5)
     if found.floor > 0.0:
         axis.axhline(found.floor, color="black", lw=0.7, ls=":")
     axis.set(xscale="log", yscale="log", title=_title(found.case.room, found.case.v_d, f"t = {found.case.time:g} s"))
@@ -116,7 +116,7 @@ def biases(judged: list[Judged]) -> Figure:
         axis.set_visible(False)
     for name, colour in STATISTICS.items():
         grid[0, 0].plot([], [], "o", ms=3, color=colour, label=f"{name}, 95 %")
-    grid[0, 0].fill_between([], [], color=figures.GREY, alpha=0.25, lw=0, label=f"+-{TOLERATED:.0%}")
+    grid[0, 0].fill_between([], [], color=figures.GREY, alpha=0.25, lw=0, label=f"$\\pm${100 * TOLERATED:g} %")
     figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
     return figure
 
