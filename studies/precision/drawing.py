@@ -129,7 +129,8 @@ def _forest(axis: Axes, cell: Cell, column: list[Judged]) -> None:
             bias = next(b for b in j.biases if b.quantity == name)
             if np.isfinite([bias.value, bias.low, bias.high]).all():
                 _arm(axis, bias, height + 0.22 * (k - 1), colour)
-    names = [f"{j.trial.name.replace('_', ' ')} ({j.biases[0].pairs})" for j in column]
+    words = [j.trial.name.replace("_", " ").replace(", ", ",\n", 1) for j in column]
+    names = [f"{name} ({j.biases[0].pairs})" for name, j in zip(words, column, strict=True)]
     axis.set_yticks(range(len(column)), names, fontsize=6)
     axis.invert_yaxis()
     drawn = [b for j in column for b in j.biases if b.quantity in STATISTICS]
@@ -137,7 +138,7 @@ def _forest(axis: Axes, cell: Cell, column: list[Judged]) -> None:
     limit = 110 * min(max([*ends, 1.25 * TOLERATED]), WIDEST)
     axis.set_xlim(-limit, limit)
     axis.set_title(_title(cell.room, cell.v_d, f"N = {cell.N}"))
-    axis.set_xlabel("bias / % (blocked share: percentage points)")
+    axis.set_xlabel("bias / %, of shares percentage points")
 
 
 def _arm(axis: Axes, bias: Bias, height: float, colour: str) -> None:
