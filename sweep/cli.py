@@ -2,6 +2,7 @@
 
 import importlib
 import pkgutil
+import re
 import sys
 from collections.abc import Sequence
 from importlib import metadata
@@ -28,6 +29,7 @@ SETTINGS = {
     "token_normalize_func": lambda word: word.replace("_", "-"),
 }
 STUDIES = "studies"
+EVERYTHING, FIGURE = "everything", r"(fig|table)\d+"  # modules of a paper of several studies
 jobs_option = click.option("--jobs", type=int, default=2, show_default=True, help="Number of worker processes.")
 dry_option = click.option("--dry-run", is_flag=True, help="Say what there is to do, and do nothing.")
 
@@ -172,10 +174,27 @@ def study(name: str, quick: bool, jobs: int) -> None:
 
 
 def _studies() -> dict[str, str]:
-    """Names of the studies and their modules: fig10 is Lin's, studies.lin_fig10."""
+    """Names of the studies and their modules.
+
+    fig10 is Lin's, studies.lin_fig10. A package is a paper of several: parisi-fig1 is studies.parisi.fig1, and
+    parisi studies.parisi.everything.
+    """
     package = importlib.import_module(STUDIES)
-    names = [module.name for module in pkgutil.iter_modules(package.__path__) if not module.ispkg]
-    return {name.removeprefix("lin_").replace("_", "-"): f"{STUDIES}.{name}" for name in sorted(names)}
+    found: dict[str, str] = {}
+    for module in pkgutil.iter_modules(package.__path__):
+        if module.ispkg:
+            found |= _studies_of_paper(module.name, [f"{path}/{module.name}" for path in package.__path__])
+        else:
+            found[module.name.removeprefix("lin_").replace("_", "-")] = f"{STUDIES}.{module.name}"
+    return dict(sorted(found.items()))
+
+
+def _studies_of_paper(paper: str, path: list[str]) -> dict[str, str]:
+    names = [module.name for module in pkgutil.iter_modules(path)]
+    if EVERYTHING not in names:
+        return {}
+    figures = {f"{paper}-{name}": f"{STUDIES}.{paper}.{name}" for name in names if re.fullmatch(FIGURE, name)}
+    return {paper: f"{STUDIES}.{paper}.{EVERYTHING}"} | figures
 
 
 if __name__ == "__main__":

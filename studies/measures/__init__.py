@@ -11,6 +11,7 @@ from studies.measures.contact_counts import (
     cluster_probability,
     contact_counts,
 )
+from studies.measures.decay import decay
 from studies.measures.delays import delay_counts, delay_survival, delays
 from studies.measures.exits import clearance, discharge, time_of_exit
 from studies.measures.facts import outcome_is
@@ -30,6 +31,7 @@ __all__ = [
     "clearance",
     "cluster_probability",
     "contact_counts",
+    "decay",
     "delay_counts",
     "delay_survival",
     "delays",
