@@ -27,6 +27,11 @@ that the model can give these numbers; the clusters, arches and delays below wer
 """
 
 
+def make_one(name: str, sweeps: Sweeps) -> list[Verdict]:
+    """Draw the figure of this name and give its verdicts."""
+    return artefact.make(import_module(f"studies.parisi.{name}"), sweeps)
+
+
 def page(found: dict[str, list[Verdict]], readings: str) -> str:
     """The page of the documents."""
     verdicts = [(name, verdict) for name, several in found.items() for verdict in several]
@@ -58,8 +63,7 @@ def main(quick: bool = False, jobs: int = 2) -> None:
     begin = time.monotonic()
     sweeps = Sweeps(quick, jobs)
     sweeps.folder.mkdir(parents=True, exist_ok=True)
-    modules = {name: import_module(f"studies.parisi.{name}") for name in ARTEFACTS}
-    found = {name: artefact.make(module, sweeps) for name, module in modules.items()}
+    found = {name: make_one(name, sweeps) for name in ARTEFACTS}
     text = table(verdict for several in found.values() for verdict in several)
     (sweeps.folder / "table.txt").write_text(text + "\n", "utf-8")
     print(text + (artefact.THINNED if quick else ""))

@@ -59,7 +59,7 @@ def _minimum(column: xr.Dataset) -> Verdict:
 def _slower(column: xr.Dataset) -> Verdict:
     """Faster is slower: the times above the threshold against the least."""
     above = column.isel(v_d=-1)
-    least = column.isel(v_d=int(column.time_of_exit.argmin()))
+    least = column.isel(v_d=int(column.time_of_exit.argmin("v_d")))
     text = f"{artefact.said(above, 'time_of_exit', 1)} s at {float(above.v_d):g}, "
     text += f"{artefact.said(least, 'time_of_exit', 1)} s at {float(least.v_d):g} m/s"
     return Verdict("faster is slower above it", "yes", text, bool(above.time_of_exit_low > least.time_of_exit_high))

@@ -36,7 +36,7 @@ def plot(found: xr.Dataset) -> Figure:
 
 def verdicts(found: xr.Dataset) -> list[Verdict]:
     """The least mean delay, and whether it rises above the threshold."""
-    best = found.isel(v_d=int(found.delay.argmin()))
+    best = found.isel(v_d=int(found.delay.argmin("v_d")))
     text = f"{artefact.said(best, 'delay', 3)} s at {float(best.v_d):g} m/s"
     rising = artefact.at(found, float(best.v_d), np.inf)
     steps = np.diff(rising.delay.values)

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
+from engine.errors import require
 from studies import measures
 from studies.parisi import artefact
 from studies.parisi.sweeps import Sweeps
@@ -27,7 +28,8 @@ def measure(sweeps: Sweeps) -> xr.Dataset:
     log = measures.arches(run, clean=True)
     ends = np.cumsum(log.arch_size.values)
     fits = (log.arch_size >= DRAWN_SIZE[0]) & (log.arch_size <= DRAWN_SIZE[1])
-    which = int(log.lifetime.where(fits).fillna(0.0).argmax())
+    require(bool(fits.any()), "run", f"at {V_D:g} m/s, seed {SEED}", "has no arch to draw", "draw another")
+    which = int(log.lifetime.where(fits).fillna(0.0).argmax("arch"))
     arch = log.isel(arch=which)
     person = log.arch_person.values[ends[which] - int(arch.arch_size) : ends[which]]
     k = int(np.abs(run.time.values - float(arch.begin_time + arch.lifetime / 2)).argmin())

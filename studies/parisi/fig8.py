@@ -44,7 +44,7 @@ def verdicts(found: xr.Dataset) -> list[Verdict]:
     clean = found.sel(kind="clean")
     fast, slow = (artefact.at(clean.sel(delay=LONG), *span) for span in ((3.0, np.inf), (0.0, 1.5)))
     short = clean.sel(delay=SHORT)
-    most = short.isel(v_d=int(short.c_ac.argmax()))
+    most = short.isel(v_d=int(short.c_ac.argmax("v_d")))
     return [
         Verdict(
             "c_ac (clean), delays from 2.3 s, from 3 m/s",

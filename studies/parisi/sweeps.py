@@ -9,6 +9,7 @@ import xarray as xr
 from joblib import Parallel, delayed, parallel_config
 
 from engine import Scenario, cache, rooms
+from engine.errors import require
 from studies import measures
 from studies.published import parisi2005 as paper
 from sweep import Grid, Store, SweepStopped, read_run, sweep
@@ -23,8 +24,9 @@ QUICK_V_D, QUICK_L = [0.8, 1.5, 2.0, 3.0, 4.0, 6.0], [1.2, 2.4, 4.2]
 
 def wide_room(L: float, seed: int = 0) -> Scenario:
     """Parisi's room at 4 m/s with as many persons as the paper has for a door of width L (Sec. 3)."""
-    N = paper.DOORS_N[L]
-    return rooms.parisi_room(paper.DOORS_V_D, N, seed, L, every=EVERY, contacts=True, state="places")
+    known = ", ".join(f"{width:g}" for width in paper.DOORS_N)
+    require(L in paper.DOORS_N, "L", f"{L} m", "is no door of the paper", f"choose one of {known} m")
+    return rooms.parisi_room(paper.DOORS_V_D, paper.DOORS_N[L], seed, L, every=EVERY, contacts=True, state="places")
 
 
 class Swept(NamedTuple):
