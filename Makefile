@@ -29,7 +29,7 @@ $(READY): pyproject.toml constraints.txt
 	@$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
 	@touch $@
 
-study-%: $(READY)  ## reproduce a figure: make study-fig10 [QUICK=1] [JOBS=2]
+study-%: $(READY)  ## reproduce a figure: make study-fig10, study-parisi, study-parisi-fig1 ... [QUICK=1] [JOBS=2]
 	@$(BIN)/jamsweep study $* --jobs $(JOBS) $(if $(QUICK),--quick)
 
 study-accuracy: $(READY)  ## error, bias and time of the numerics: make study-accuracy [QUICK=1] [JOBS=2] [DOCS=1] [MORE=4]

@@ -22,7 +22,8 @@ def measure(sweeps: Sweeps) -> xr.Dataset:
     ranks = list(paper.FIG1_RANKS)
     times = measures.time_of_exit(sweeps.speeds, ranks)
     means = measures.mean_over(times.time_of_exit, censored=times.censored)
-    return means.merge(measures.faster_is_slower(sweeps.speeds, ranks).drop_vars(["runs", "censored"]))
+    threshold = measures.faster_is_slower(sweeps.speeds, ranks)
+    return means.assign({name: threshold[name] for name in threshold if str(name).startswith("v_dt")})
 
 
 def plot(found: xr.Dataset) -> Figure:
@@ -31,7 +32,7 @@ def plot(found: xr.Dataset) -> Figure:
     for k, n in enumerate(reversed(paper.FIG1_RANKS)):
         artefact.points(axis, found.sel(n=n), "time_of_exit", k, f"{n} persons out")
     published = paper.EVACUATION_TIME
-    axis.plot([*published], [*published.values()], "x", color="black", ms=5, label="published, 200 (Table 1)")
+    axis.plot([*published], [*published.values()], "x", color="black", ms=5, zorder=5, label="published, 200 (Table 1)")
     last = found.sel(n=paper.N)
     if np.isfinite(last.v_dt_low) and np.isfinite(last.v_dt_high):
         axis.axvspan(float(last.v_dt_low), float(last.v_dt_high), color=figures.GREY, alpha=0.25, lw=0)

@@ -27,8 +27,8 @@ def measure(sweeps: Sweeps) -> xr.Dataset:
     law = measures.decay(xr.Dataset({"clearance_time": out}), "clearance_time")
     means = measures.mean_over(out, censored=times.censored)
     found = measures.blocking_probability(sweeps.door_counts)
-    found = found.merge(means.drop_vars(["runs", "censored"]))
-    return found.merge(law.rename(runs="fitted_runs"))
+    found = found.assign(means.drop_vars(["runs", "censored"]).data_vars)
+    return found.assign(law.drop_vars("runs").data_vars)
 
 
 def plot(found: xr.Dataset) -> Figure:

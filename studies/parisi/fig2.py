@@ -23,7 +23,7 @@ def measure(sweeps: Sweeps) -> xr.Dataset:
     longest = measures.delays(ds, *paper.FIG3_RANKS).delay.max("exit").rename("longest_delay")
     longest.attrs = {"units": "s", "long_name": "longest delay"}
     means = measures.mean_over(curves).drop_vars(["runs", "censored"])
-    return means.merge(measures.mean_over(longest)).assign(single=curves.isel(seed=0, drop=True))
+    return means.assign(measures.mean_over(longest).data_vars).assign(single=curves.isel(seed=0, drop=True))
 
 
 def plot(found: xr.Dataset) -> Figure:

@@ -28,7 +28,7 @@ def plot(found: xr.Dataset) -> Figure:
     figure, (axis,) = figures.panels(1, figures.COLUMN, artefact.HEIGHT)
     artefact.points(axis, found, "delay", 0, "found, 95 %")
     published = {v_d: t / paper.N for v_d, t in paper.EVACUATION_TIME.items()}
-    axis.plot([*published], [*published.values()], "x", color="black", ms=5, label="published $t_e$/200 (Table 1)")
+    axis.plot([*published], [*published.values()], "x", color="black", ms=5, zorder=5, label="published $t_e$/200")
     axis.set(xlabel=artefact.V_D, ylabel="mean delay / s", ylim=(0, None))
     axis.legend(loc="lower right")
     return figure

@@ -65,7 +65,7 @@ def verdicts(found: xr.Dataset) -> list[Verdict]:
             artefact.within(artefact.at(short, 0.0, 4.0).c_ac, 0.0, paper.SHORTEST_BIN_C_AC),
         ),
         Verdict(
-            "the same at every v_d",
+            "c_ac (clean), delays of 0.1-0.3 s, at every v_d",
             f"at most {paper.SHORTEST_BIN_C_AC}",
             f"{artefact.said(most, 'c_ac')} at {float(most.v_d):g} m/s",
             artefact.within(short.c_ac, 0.0, paper.SHORTEST_BIN_C_AC),

@@ -49,7 +49,7 @@ def plot(found: xr.Dataset) -> Figure:
     ):
         for k, reading in enumerate(READINGS):
             artefact.points(axis, found.sel(reading=reading), name, k, f"{LABELS[reading]}, 95 %")
-        axis.plot(found.v_d, published, "x", color="black", ms=5, label="published (Table 1)")
+        axis.plot(found.v_d, published, "x", color="black", ms=5, zorder=5, label="published (Table 1)")
         axis.set(xlabel=artefact.V_D, ylabel=words, ylim=(0, None))
     axes[1].legend(loc="lower right")
     return figure

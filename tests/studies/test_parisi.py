@@ -67,7 +67,9 @@ def held(artefact, **facts):
 
 def test_the_published_ratios_are_those_of_the_published_times():
     for v_d, t in paper.EVACUATION_TIME.items():
-        assert t / (paper.N * paper.SHOULDERS / v_d) == pytest.approx(paper.RATIO[v_d], rel=0.03)  # 3.10 is printed for 3.01
+        assert t / (paper.N * paper.SHOULDERS / v_d) == pytest.approx(
+            paper.RATIO[v_d], rel=0.03
+        )  # 3.10 is printed for 3.01
     assert set(paper.EVACUATION_TIME) == set(paper.RATIO) <= set(paper.V_D)
     assert (len(paper.V_D), len(paper.DOORS_N), paper.DOORS_N[4.2]) == (13, 6, 500)
 
