@@ -70,3 +70,10 @@ def within(values: xr.DataArray, low: float, high: float) -> bool | None:
     """Whether all finite values lie between low and high; None where there are none."""
     finite = values.values[np.isfinite(values.values)]
     return bool(((finite >= low) & (finite <= high)).all()) if finite.size else None
+
+
+def larger(cell: xr.Dataset, other: xr.Dataset, name: str) -> bool | None:
+    """Whether an estimate is larger in one cell than in the other; None where the intervals overlap."""
+    if cell[f"{name}_low"] > other[f"{name}_high"]:
+        return True
+    return False if cell[f"{name}_high"] < other[f"{name}_low"] else None

@@ -63,7 +63,7 @@ def _slower(column: xr.Dataset) -> Verdict:
     least = column.isel(v_d=int(column.time_of_exit.argmin("v_d")))
     text = f"{artefact.said(above, 'time_of_exit', 1)} s at {float(above.v_d):g}, "
     text += f"{artefact.said(least, 'time_of_exit', 1)} s at {float(least.v_d):g} m/s"
-    return Verdict("faster is slower above it", "yes", text, bool(above.time_of_exit_low > least.time_of_exit_high))
+    return Verdict("faster is slower above it", "yes", text, artefact.larger(above, least, "time_of_exit"))
 
 
 def main(quick: bool = False, jobs: int = 2) -> None:

@@ -43,7 +43,7 @@ def verdicts(found: xr.Dataset) -> list[Verdict]:
     """Long delays grow with v_d above the threshold."""
     middle, fast = found.sel(v_d=2.0), found.sel(v_d=6.0)
     text = ", ".join(f"{float(v.v_d):g} m/s: {artefact.said(v, 'longest_delay', 1)} s" for v in (middle, fast))
-    longer = bool(fast.longest_delay_low > middle.longest_delay_high)
+    longer = artefact.larger(fast, middle, "longest_delay")
     return [Verdict("longest delay of ranks 10 to 160: larger at 6 m/s", "larger than at 2", text, longer)]
 
 

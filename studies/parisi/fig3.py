@@ -49,11 +49,8 @@ def verdicts(found: xr.Dataset) -> list[Verdict]:
 def _grows(slow: xr.Dataset, fast: xr.Dataset) -> Verdict:
     """Whether the share at the higher v_d is larger; open where the intervals overlap."""
     text = ", ".join(f"{float(cell.v_d):g} m/s: {artefact.said(cell, 'delay_survival', 4)}" for cell in (slow, fast))
-    apart = bool(slow.delay_survival_high < fast.delay_survival_low)
-    falls = bool(fast.delay_survival_high < slow.delay_survival_low)
-    holds = True if apart else False if falls else None
     statement = f"share of delays above {LONG:g} s, {float(slow.v_d):g} to {float(fast.v_d):g} m/s"
-    return Verdict(statement, "grows", text, holds)
+    return Verdict(statement, "grows", text, artefact.larger(fast, slow, "delay_survival"))
 
 
 def main(quick: bool = False, jobs: int = 2) -> None:

@@ -112,10 +112,10 @@ def _sizes(count: xr.DataArray, kind: str, low: int, high: int) -> Verdict:
 
 def _lifetime(found: xr.Dataset) -> Verdict:
     longest = float(found.longest_lifetime.sel(kind="clean"))
-    within = 0.5 * paper.ARCH_LASTS <= longest <= 2 * paper.ARCH_LASTS  # of a maximum, which grows with the runs
-    return Verdict(
-        "longest life of one (clean), above 2 m/s", f"up to {paper.ARCH_LASTS:g} s", f"{longest:.1f} s", within
-    )
+    near = longest >= 0.5 * paper.ARCH_LASTS or None  # a maximum grows with the number of runs
+    holds = False if longest > 2 * paper.ARCH_LASTS else near
+    statement = "longest life of one (clean), above 2 m/s"
+    return Verdict(statement, f"up to {paper.ARCH_LASTS:g} s", f"{longest:.1f} s", holds)
 
 
 def main(quick: bool = False, jobs: int = 2) -> None:

@@ -43,9 +43,9 @@ def verdicts(found: xr.Dataset) -> list[Verdict]:
         f"{label_of(float(c.delay), float(c.delay_end))}: {float(c.delay_count):.1f}" for c in _bins(slow)
     )
     short = [artefact.said(cell.sel(delay=0.1), "delay_count", 0) for cell in (slow, fast)]
-    more = bool(fast.delay_count_low.sel(delay=0.1) > slow.delay_count_high.sel(delay=0.1))
+    more = artefact.larger(fast.sel(delay=0.1), slow.sel(delay=0.1), "delay_count")
     long = [artefact.said(cell.sel(delay=2.3), "delay_count", 1) for cell in (middle, fast)]
-    longer = bool(fast.delay_count_low.sel(delay=2.3) > middle.delay_count_high.sel(delay=2.3))
+    longer = artefact.larger(fast.sel(delay=2.3), middle.sel(delay=2.3), "delay_count")
     return [
         Verdict("delays at 0.8 m/s: most in 0.3-1 s", "most", several, rules),
         Verdict("delays of 0.1-0.3 s: more at high v_d", "more", f"0.8 m/s: {short[0]}, 6 m/s: {short[1]}", more),
