@@ -21,7 +21,7 @@ class Level(NamedTuple):
 LEVELS = {
     "2%": Level("semi_implicit", 0.55, 0.3),
     "1mm": Level("semi_implicit", 0.1, 1e-2),
-    "0.1mm": Level("semi_implicit", 0.01, 1e-3),
+    "0.1mm": Level("semi_implicit", 0.02, 1e-3),
 }
 WAYS = ("accurate", "paper")
 

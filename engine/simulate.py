@@ -108,7 +108,7 @@ class Run:
             "time_limit": f"stopped at the time limit of {self.end_time:g} s, {self.N_out} of {self.N} out",
             "unstable": f"unstable after {self.end_time:.4f} s: person {self.culprit} was pressed or thrown through "
             f"{f'person {self.partner}' if self.partner >= 0 else 'others'} (overlap up to {self.max_overlap:.2g} m, "
-            f"speed up to {self.max_speed:.3g} m/s); shorten dt",
+            f"speed up to {self.max_speed:.3g} m/s); shorten dt or stiffen the contacts",
         }[self.outcome]
 
 

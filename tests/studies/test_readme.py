@@ -22,13 +22,12 @@ def test_the_readmes_ten_lines_work_as_printed(tmp_path):
 
 
 def test_contributings_recipe_for_a_law_works_as_printed(tmp_path):
-    """In a copy of the engine: the law and its companions put at the end of its section, then the run."""
+    """In a copy of the engine: the law and its companions put at the end of its file, then the run."""
     text = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
     law, companions, run = (textwrap.dedent(code) for code in re.findall(r"```python\n(.*?)```", text, flags=re.DOTALL))
     shutil.copytree(ROOT / "engine", tmp_path / "engine", ignore=shutil.ignore_patterns("__pycache__"))
-    path = tmp_path / "engine" / "laws.py"
-    laws = path.read_text("utf-8")
-    path.write_text(laws.replace("# --- Vision", f"{law}\n\n{companions}\n\n# --- Vision", 1))
+    path = tmp_path / "engine" / "laws" / "repulsion.py"
+    path.write_text(path.read_text("utf-8") + f"\n\n{law}\n\n{companions}")
     environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": str(tmp_path)}
     command = [sys.executable, "-c", run]
     found = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=True)
