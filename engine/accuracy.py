@@ -19,7 +19,7 @@ class Level(NamedTuple):
 
 
 LEVELS = {
-    "2%": Level("semi_implicit", 0.55, 0.3),
+    "2%": Level("semi_implicit", 0.36, 0.3),
     "1mm": Level("semi_implicit", 0.1, 1e-2),
     "0.1mm": Level("semi_implicit", 0.02, 1e-3),
 }

@@ -20,7 +20,6 @@ MOST_PARTS = 64  # into which a step is cut
 FIRST_SKIN, LEAST_SKIN = 0.12, 0.01  # m
 LIST_COST = 2.4  # of making lists, in visits of all pairs
 QUIET_LOOKS = 5  # until rest is tested: forces that do not balance would have set somebody in motion by then
-HALF_WAY = 0.6  # whoever is on the far side of a wall, or was too near before, is seen if speeds grow by a fifth
 STRIDE = 0.2  # of the smallest radius: how far a person may move in one go
 RUNNING, ALL_OUT, BLOCKED, FROZEN, TIME_LIMIT, UNSTABLE = range(6)
 
@@ -88,8 +87,8 @@ def advance(integrator, model, scene, rules, people, near, touch, log, tape, clo
     `people` and `log` are changed in place; the new lists, contacts, tape and clock are returned. A step that the
     laws do not allow at the present overlap, or in which somebody would move farther than STRIDE, is cut into equal
     parts. A run is unstable when somebody is nowhere, moves by more than half the smallest radius in a part, or is
-    pressed deeper than that radius into another, or than that less half the way of one part into a wall: nobody can
-    have passed through either before.
+    pressed deeper than that radius into another, or than three quarters of it and than it less the way of one part into
+    a wall: nobody can have passed through either before.
     """
     scratch, touching = np.empty(ROWS * BLOCK), np.empty(BLOCK + 1, np.uint32)
     while True:
@@ -174,10 +173,12 @@ def _walk(integrator, model, scene, rules, people, near, touch, log, clock, unti
         correct(integrator, turning, people, n, part)
         moved = False
         piece += 1
-        overlap, speed = max(between, at_wall), math.sqrt(_fastest(people, n))
-        max_overlap, max_speed = max(max_overlap, overlap), max(max_speed, speed)
         way = part * speed
-        if way > 0.5 * rules.deepest or between > rules.deepest or at_wall > rules.deepest - HALF_WAY * way:
+        overlap, speed = max(between, at_wall), math.sqrt(_fastest(people, n))
+        way = max(way, part * speed)  # whoever is stopped by a wall was faster before
+        max_overlap, max_speed = max(max_overlap, overlap), max(max_speed, speed)
+        into_wall = max(0.75 * rules.deepest, rules.deepest - way)
+        if part * speed > 0.5 * rules.deepest or between > rules.deepest or at_wall > into_wall:
             culprit, partner = _most_moved(people, n, near)
             outcome = UNSTABLE
         if piece == parts or outcome == UNSTABLE:

@@ -126,3 +126,10 @@ def largest_flooded(pairs):
             for person in joined:
                 group[person] = joined
     return max(map(len, group.values()), default=0)
+
+
+def test_a_crowd_that_presses_somebody_deep_into_the_edge_of_the_door_is_no_unstable_run():
+    runs = [simulate(rooms.parisi_room(v_d=8.0, seed=seed)) for seed in (5, 6, 7)]
+    deep = [run for run in runs if run.max_overlap > 0.75 * min(run.start.radius)]
+    assert deep
+    assert all(run.outcome == "all_out" for run in deep)
