@@ -42,7 +42,7 @@ stress: $(READY)  ## the engine at its edges and 10,000 random scenes: make stre
 	@$(BIN)/python -m studies.stress --jobs $(JOBS) $(if $(QUICK),--quick) $(if $(DOCS),--docs)
 
 test: $(READY)  ## all tests
-	@$(BIN)/python -m pytest
+	@$(BIN)/python -m pytest -n $(JOBS) --dist loadfile
 
 lint: $(READY)  ## style, layers, types
 	@$(BIN)/ruff check .
