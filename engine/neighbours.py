@@ -229,20 +229,25 @@ def _pairs(people, n, start, columns, rows, gap):
 @njit(cache=True, error_model="numpy")
 def _wall_pairs(people, n, walls, gap):
     """Persons i and walls with a gap below `gap`, ordered by i."""
-    is_near = np.empty((walls.shape[0], n), np.uint8)
+    is_near, felt, walls_felt = np.empty((walls.shape[0], n), np.uint8), np.empty(walls.shape[0], np.int64), 0
     for w in range(walls.shape[0]):
         x0, y0, ux, uy, length = walls[w, 0], walls[w, 1], walls[w, 2], walls[w, 3], walls[w, 4]
+        by = 0
         for i in range(n):
             dx, dy, widest = people.x[i] - x0, people.y[i] - y0, people.radius[i] + gap
             s = min(max(dx * ux + dy * uy, 0.0), length)
             is_near[w, i] = (dx - s * ux) ** 2 + (dy - s * uy) ** 2 < widest * widest
+            by += is_near[w, i]
+        if by > 0:
+            felt[walls_felt] = w
+            walls_felt += 1
     found_i, found_wall, count = np.empty(n, np.uint32), np.empty(n, np.uint32), 0
     for i in range(n):
-        while count + walls.shape[0] > found_i.size:
+        while count + walls_felt > found_i.size:
             found_i, found_wall = _doubled(found_i), _doubled(found_wall)
-        for w in range(walls.shape[0]):
-            found_i[count], found_wall[count] = i, w
-            count += is_near[w, i]
+        for k in range(walls_felt):
+            found_i[count], found_wall[count] = i, felt[k]
+            count += is_near[felt[k], i]
     return found_i[:count], found_wall[:count]
 
 
