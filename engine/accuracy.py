@@ -1,4 +1,4 @@
-"""Step, integrator and reach from a stated error, as `make study-accuracy` measured them (docs/accuracy.md)."""
+"""Step, integrator and reach from a stated error; `make study-accuracy` measures what they give."""
 
 import math
 from dataclasses import replace
@@ -37,12 +37,12 @@ def numerics_for(
     force_tolerance: float | None = None,
     integrator: str | None = None,
 ) -> Numerics:
-    """The cheapest numerics whose error is known to stay below what is tolerated, or those of a paper.
+    """Numerics chosen to keep the error below what is tolerated, or those of a paper.
 
     Parameters
     ----------
     numerics : "accurate", from `accuracy`; or "paper"
-    accuracy : "2%", bias of the statistics (mean clearance time, blocked share, delays; with 95 % confidence);
+    accuracy : "2%", bias of the statistics (mean clearance time, blocked share, delays);
         "1mm" or "0.1mm", root mean square error of the places before chaos
     paper : what the paper did
     every : sampling interval, which the step must divide, s; 0: none

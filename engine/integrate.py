@@ -279,10 +279,7 @@ def _most_moved(people, n, near):
 
 @step_function
 def _cross(lines, people, n, dt, time, log, N_out):
-    """Log who will cross an exit in this step, at the time and place interpolated in it; returns how many.
-
-    No helper functions in this loop: a call with arrays counts references, which costs more than the work.
-    """
+    """Log who will cross an exit in this step, at the time and place interpolated in it; returns how many."""
     x, y, vx, vy, out = people.x, people.y, people.vx, people.vy, people.out
     crossed = 0
     for k in range(lines.shape[0]):

@@ -24,7 +24,7 @@ TRIES = 60
 
 
 class SemiImplicit(NamedTuple):
-    """First order where friction acts, second order elsewhere; limited by the springs only."""
+    """First order where friction acts, second order elsewhere; no friction without a spring limits its step."""
 
 
 @begin.law(SemiImplicit)
