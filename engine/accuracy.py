@@ -20,8 +20,8 @@ class Level(NamedTuple):
 
 LEVELS = {
     "2%": Level("semi_implicit", 0.36, 0.3),
-    "1mm": Level("semi_implicit", 0.1, 1e-2),
-    "0.1mm": Level("semi_implicit", 0.02, 1e-3),
+    "1mm": Level("semi_implicit", 0.18, 1e-2),
+    "0.1mm": Level("predictor", 0.45, 1e-3),
 }
 WAYS = ("accurate", "paper")
 

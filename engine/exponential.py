@@ -12,13 +12,12 @@ SMALLEST, LARGEST = -708.0, 709.0  # beyond: denormal, overflow
 def exp(x):
     """exp(x) within 1e-14 relative for SMALLEST <= x <= LARGEST, held at the ends outside.
 
-    x = k ln 2 + r with abs(r) <= ln 2 / 2; Taylor's series in r to the 12th order; 2^k by its bits.
+    x = k ln 2 + r with abs(r) <= ln 2 / 2; Taylor's series in r to the 11th order; 2^k by its bits.
     """
     x = min(max(x, SMALLEST), LARGEST)
     k = np.floor(x * LOG2_E + 0.5)
     r = (x - k * LN2_HIGH) - k * LN2_LOW
-    q = 1.0 / 479001600.0
-    q = q * r + 1.0 / 39916800.0
+    q = 1.0 / 39916800.0
     q = q * r + 1.0 / 3628800.0
     q = q * r + 1.0 / 362880.0
     q = q * r + 1.0 / 40320.0

@@ -11,6 +11,7 @@ from engine.integrators.choice import settles
 from engine.laws import drive, looks, normal, remembers, sliding, social, stiff, turns, vision
 
 BLOCK = 512  # pairs; a constant, so that the compiler sees that the scratch rows do not overlap
+AWAY = 1e9  # m, out of the reach of any law
 ROWS = 7  # of scratch: dx, dy, r_i + r_j, desired directions of i and j
 
 
@@ -36,7 +37,7 @@ def forces(integrator, model, scene, people, n, near, touch, stretch, lead, scra
     touch.counts[:] = 0
     _driving(integrator, model, scene.exits, people, n, scratch)
     overlap = _between_persons(integrator, model, people, near, touch, stretch, lead, scratch, touching)
-    return overlap, _at_walls(integrator, model, scene, people, near, touch, stretch, lead)
+    return overlap, _at_walls(integrator, model, scene, people, near, touch, stretch, lead, scratch, touching)
 
 
 @step_function
@@ -161,13 +162,7 @@ def _scatter(people, i, j, count, s):
 @inlined_step_function
 def _contacts(integrator, model, people, i, j, slip, first, touch, count, stretch, lead, s, touching):
     """Normal and tangential forces of the pairs in touch; a spring ends with its contact."""
-    touches = 0
-    for p in range(count):  # without a branch: most pairs do not touch
-        touching[touches] = p
-        touches += s[2 * BLOCK + p] < 0.0
-    if remembers(model.sliding):
-        for p in range(count):
-            slip[p] = slip[p] if s[2 * BLOCK + p] < 0.0 else 0.0
+    touches = _touches(model.sliding, slip, count, s, touching)
     deepest = 0.0
     for t in range(touches):
         p = touching[t]
@@ -209,51 +204,96 @@ def _contacts(integrator, model, people, i, j, slip, first, touch, count, stretc
 
 
 @step_function
-def _at_walls(integrator, model, scene, people, near, touch, stretch, lead):
+def _at_walls(integrator, model, scene, people, near, touch, stretch, lead, s, touching):
     """Forces of the walls: bodies of infinite mass and radius, each acting through its closest point."""
-    walls, joints, slips = scene.walls, scene.joints, near.wall_slip
     deepest = 0.0
-    for p in range(near.wall_i.size):
-        i, w = near.wall_i[p], near.wall[p]
-        x, y, radius = people.x[i], people.y[i], people.radius[i]
-        dx, dy, end = _from_segment(x, y, walls[w, 0], walls[w, 1], walls[w, 2], walls[w, 3], walls[w, 4])
-        if end >= 0 and joints[w, end, 0] >= 0 and not _counts(walls, joints, w, end, x, y, dx, dy):
-            slips[p] = 0.0
-            continue
-        distance = math.sqrt(dx * dx + dy * dy)
-        nx, ny = dx / distance, dy / distance
-        overlap = radius - distance
-        F_n, F_t = social(model.wall_social, -overlap), 0.0
-        if overlap > 0.0:
-            deepest = max(deepest, overlap)
-            v_n = people.vx[i] * nx + people.vy[i] * ny
-            v_t = people.vy[i] * nx - people.vx[i] * ny
-            if turns(model.rotation):
-                v_t -= radius * people.spin[i]
-            mass = people.mass[i]
-            if settles(integrator) and stiff(model.wall_sliding):
-                k = touch.counts[0] + touch.counts[1]
-                touch.counts[1] += 1
-                touch.a[k], touch.b[k], touch.place[k] = i, i, p
-                touch.nx[k], touch.ny[k], touch.overlap[k] = nx, ny, overlap
-                touch.slip[k], touch.u[k] = slips[p] + v_t * stretch, v_t
-                touch.F_n[k] = normal(model.wall_normal, overlap, radius, mass, 0.0)
-                touch.radius[k], touch.mass[k] = radius, mass
-                F_n += touch.F_n[k]
-                people.fx[i] += F_n * nx
-                people.fy[i] += F_n * ny
-                continue
-            pressing = normal(model.wall_normal, overlap, radius, mass, v_n)
-            ahead, slip = lead * v_t, slips[p] + v_t * stretch
-            F_t, stretched = sliding(model.wall_sliding, overlap, radius, mass, v_t, pressing, slip - ahead)
-            slips[p] = stretched + ahead
-            F_n += pressing
-            people.torque[i] -= radius * F_t
-        else:
-            slips[p] = 0.0
-        people.fx[i] += F_n * nx - F_t * ny
-        people.fy[i] += F_n * ny + F_t * nx
+    for first in range(0, near.wall_i.size, BLOCK):
+        count = min(BLOCK, near.wall_i.size - first)
+        i, wall = near.wall_i[first : first + count], near.wall[first : first + count]
+        _gather_walls(scene, people, i, wall, count, s)
+        _repel_from_walls(model, count, s)
+        for p in range(count):
+            people.fx[i[p]] += s[3 * BLOCK + p] * s[p]
+            people.fy[i[p]] += s[3 * BLOCK + p] * s[BLOCK + p]
+        slip = near.wall_slip[first : first + count]
+        overlap = _contacts_at_walls(
+            integrator, model, people, i, slip, first, touch, count, stretch, lead, s, touching
+        )
+        deepest = max(deepest, overlap)
     return deepest
+
+
+@inlined_step_function
+def _gather_walls(scene, people, i, wall, count, s):
+    """Bring the ways from a block's walls to their persons together, and radii; -AWAY where a wall does not act."""
+    walls, joints = scene.walls, scene.joints
+    for p in range(count):
+        x, y, w = people.x[i[p]], people.y[i[p]], wall[p]
+        dx, dy, end = _from_segment(x, y, walls[w, 0], walls[w, 1], walls[w, 2], walls[w, 3], walls[w, 4])
+        s[p], s[BLOCK + p], s[2 * BLOCK + p] = dx, dy, people.radius[i[p]]
+        if end >= 0 and joints[w, end, 0] >= 0 and not _counts(walls, joints, w, end, x, y, dx, dy):
+            s[2 * BLOCK + p] = -AWAY
+
+
+@inlined_step_function
+def _repel_from_walls(model, count, s):
+    """Turn scratch into n_x, n_y, gap (AWAY where a wall does not act) and social force along n."""
+    for p in range(count):
+        dx, dy = s[p], s[BLOCK + p]
+        distance = math.sqrt(dx * dx + dy * dy)
+        inverse = 1.0 / distance
+        gap = distance - s[2 * BLOCK + p]
+        s[p], s[BLOCK + p], s[2 * BLOCK + p] = dx * inverse, dy * inverse, gap
+        s[3 * BLOCK + p] = social(model.wall_social, gap)
+
+
+@inlined_step_function
+def _contacts_at_walls(integrator, model, people, i, slips, first, touch, count, stretch, lead, s, touching):
+    """Normal and tangential forces of those who touch a wall; a spring ends with its contact."""
+    touches = _touches(model.wall_sliding, slips, count, s, touching)
+    deepest = 0.0
+    for t in range(touches):
+        p = touching[t]
+        a, overlap = i[p], -s[2 * BLOCK + p]
+        nx, ny = s[p], s[BLOCK + p]
+        deepest = max(deepest, overlap)
+        radius, mass = people.radius[a], people.mass[a]
+        v_n = people.vx[a] * nx + people.vy[a] * ny
+        v_t = people.vy[a] * nx - people.vx[a] * ny
+        if turns(model.rotation):
+            v_t -= radius * people.spin[a]
+        if settles(integrator) and stiff(model.wall_sliding):
+            k = touch.counts[0] + touch.counts[1]
+            touch.counts[1] += 1
+            touch.a[k], touch.b[k], touch.place[k] = a, a, first + p
+            touch.nx[k], touch.ny[k], touch.overlap[k] = nx, ny, overlap
+            touch.slip[k], touch.u[k] = slips[p] + v_t * stretch, v_t
+            F_n = normal(model.wall_normal, overlap, radius, mass, 0.0)
+            touch.radius[k], touch.mass[k], touch.F_n[k] = radius, mass, F_n
+            people.fx[a] += F_n * nx
+            people.fy[a] += F_n * ny
+            continue
+        F_n = normal(model.wall_normal, overlap, radius, mass, v_n)
+        ahead = lead * v_t
+        F_t, stretched = sliding(model.wall_sliding, overlap, radius, mass, v_t, F_n, slips[p] + v_t * stretch - ahead)
+        slips[p] = stretched + ahead
+        people.fx[a] += F_n * nx - F_t * ny
+        people.fy[a] += F_n * ny + F_t * nx
+        people.torque[a] -= radius * F_t
+    return deepest
+
+
+@inlined_step_function
+def _touches(law, slip, count, s, touching):
+    """How many pairs of a block touch, and which; the springs of the others end."""
+    touches = 0
+    for p in range(count):  # without a branch: most pairs do not touch
+        touching[touches] = p
+        touches += s[2 * BLOCK + p] < 0.0
+    if remembers(law):
+        for p in range(count):
+            slip[p] = slip[p] if s[2 * BLOCK + p] < 0.0 else 0.0
+    return touches
 
 
 @inlined_step_function

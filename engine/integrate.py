@@ -21,6 +21,7 @@ FIRST_SKIN, LEAST_SKIN = 0.12, 0.01  # m
 LIST_COST = 2.4  # of making lists, in visits of all pairs
 QUIET_LOOKS = 5  # until rest is tested: forces that do not balance would have set somebody in motion by then
 STRIDE = 0.2  # of the smallest radius: how far a person may move in one go
+LEAST_ROOM = 0.05  # of the smallest radius; with less left to be pressed through, strides do not get shorter
 RUNNING, ALL_OUT, BLOCKED, FROZEN, TIME_LIMIT, UNSTABLE = range(6)
 
 
@@ -86,9 +87,10 @@ def advance(integrator, model, scene, rules, people, near, touch, log, tape, clo
 
     `people` and `log` are changed in place; the new lists, contacts, tape and clock are returned. A step that the
     laws do not allow at the present overlap, or in which somebody would move farther than STRIDE, is cut into equal
-    parts. A run is unstable when somebody is nowhere, moves by more than half the smallest radius in a part, or is
-    pressed deeper than that radius into another, or than three quarters of it and than it less the way of one part into
-    a wall: nobody can have passed through either before.
+    parts, into more where somebody may be pressed deeper than half the smallest radius. A run is unstable when somebody
+    is nowhere, moves by more than half the smallest radius in a part, or is pressed deeper than that radius into
+    another, or than three quarters of it and than it less the way of one part into a wall: nobody can have passed
+    through either before.
     """
     scratch, touching = np.empty(ROWS * BLOCK), np.empty(BLOCK + 1, np.uint32)
     while True:
@@ -243,7 +245,8 @@ def _parts(integrator, model, rules, overlap, speed):
     )
     longest = min(min(limits[0], limits[1]), limits[2])
     if speed > 0.0:
-        longest = min(longest, STRIDE * rules.deepest / speed)
+        room = max(rules.deepest - overlap - speed * rules.dt, LEAST_ROOM * rules.deepest)
+        longest = min(longest, STRIDE * min(rules.deepest, 2.0 * room) / speed)
     parts = 1
     while parts < MOST_PARTS and rules.dt > parts * longest:
         parts *= 2

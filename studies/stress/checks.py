@@ -15,8 +15,10 @@ ROUNDING = 1e-9  # m and s
 MOMENTUM = 1e-9  # of the sum of all mass times speed, or of 1 kg m/s
 # What the step's own error may add to the energy of a passive crowd, of that at the start, at the longest step
 # allowed. It falls with the step where there is friction, and for a lossless crowd with the integrator's order; an
-# integrator of first order also makes it swing while bodies are in touch.
-LOSSLESS_DRIFT = 0.3
+# integrator of first order also makes it swing while bodies are in touch. Velocity Verlet on a spring of frequency w
+# conserves K + (1 - (w dt/2)^2) V, so a pair that springs apart loses (w dt/2)^2 of its energy, which is a third of
+# (dt/limit)^2, since the limit is taken for three times the stiffness of one pair.
+LOSSLESS_DRIFT = 1.0 / 3.0
 PASSIVE_RISE = 0.3
 FIRST_ORDER_SWING = 1.0
 SECOND_ORDER = ("velocity_verlet", "predictor")  # without friction and damping; any other integrator: first

@@ -13,7 +13,6 @@ from studies.stress.kinds import Kind
 
 REFUSED, FAILED, HUNG, CRASHED = "refused", "failed", "hung", "crashed"
 # What made a run unstable
-FAST = "somebody moved by more than half the smallest radius in a step"
 STIFF = "at a tenth of the step it is not"
 SOFT = "at a tenth of the step it is too: the bodies give way"
 
@@ -73,9 +72,7 @@ def _refused(case: Case, line: str) -> Judgement:
 
 
 def _cause(run: Run) -> str:
-    """Tell steps longer than half a radius and steps that contacts do not bear from bodies that give way."""
+    """Tell steps that contacts do not bear from bodies that give way."""
     scenario = replace(run.scenario, record=Record())
-    if run.max_speed * scenario.numerics.dt > 0.5 * min(scenario.crowd.radius):
-        return f"{run}; {FAST}"
     shorter = simulate(replace(scenario, numerics=replace(scenario.numerics, dt=scenario.numerics.dt / 10)))
     return f"{run}; {SOFT if shorter.outcome == 'unstable' else STIFF}"

@@ -9,7 +9,7 @@ from engine import OUTCOMES
 from studies.presentation.machine import machine
 from studies.stress import kinds
 from studies.stress.checks import FIRST_ORDER_SWING, LOSSLESS_DRIFT, MOMENTUM, PASSIVE_RISE
-from studies.stress.judge import CRASHED, FAILED, FAST, HUNG, REFUSED, SOFT, STIFF, Judgement
+from studies.stress.judge import CRASHED, FAILED, HUNG, REFUSED, SOFT, STIFF, Judgement
 
 HEAD = (
     "family",
@@ -64,12 +64,11 @@ def goals(results: list[Result]) -> list[str]:
     """What was to hold, and whether it did."""
     violations = sum(bool(result.judgement.violations) for result in results)
     nameless = sum(result.judgement.outcome in (FAILED, HUNG, CRASHED) for result in results)
-    unstable = Counter(cause for result in results for cause in (FAST, STIFF, SOFT) if cause in result.judgement.note)
+    unstable = Counter(cause for result in results for cause in (STIFF, SOFT) if cause in result.judgement.note)
     below = "unstable runs below the longest step allowed"
     return [
         _goal("runs that end without a named outcome", nameless),
         _goal("runs that break an invariant", violations),
-        _goal(f"{below}, where {FAST}", unstable[FAST]),
         _goal(f"{below}, where {STIFF}", unstable[STIFF]),
         f"{below}, where {SOFT}: {unstable[SOFT]}",
     ]

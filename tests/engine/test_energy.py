@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine import laws, simulate
+from engine import Crowd, Model, Numerics, Record, Scenario, Scene, Stopping, laws, simulate
 from tests.engine.scenes import energy, passive, stiffening
 from tests.oracle import cases
 
@@ -37,6 +37,25 @@ def test_without_friction_and_damping_energy_is_conserved():
         drifts.append(np.abs(total - total[0]).max() / total[0])
     assert drifts[0] < 4e-5
     assert drifts[1] < drifts[0] / 50
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
+def test_a_compressed_pair_trades_energy_as_verlet_does_in_closed_form(share):
+    """On a spring of frequency w, K + (1 - (w dt/2)^2) V is constant; the limit is 2/(sqrt(3) w)."""
+    k_n, m, r, overlap = 1.2e5, 70.0, 0.3, 0.1
+    w = np.sqrt(2.0 * k_n / m)
+    dt = share * 2.0 / (np.sqrt(3.0) * w)
+    model = Model(laws.Absent(), normal=laws.Hooke(k_n, 0.0))
+    crowd = Crowd.given([0.0, 2 * r - overlap], [0.0, 0.0], 0.0, 0.0, 0.0, r, m, 0.0)
+    scenario = Scenario(Scene(), crowd, model, Numerics(dt), Stopping(time_limit=8 * dt), Record(dt))
+    samples = simulate(scenario).samples
+    stored = 0.5 * k_n * np.maximum(2 * r - np.abs(samples.x[:, 1] - samples.x[:, 0]), 0.0) ** 2
+    moving = 0.5 * m * (samples.vx**2).sum(axis=1)
+    touching = stored > 0.0
+    constant = (moving + (1.0 - (0.5 * w * dt) ** 2) * stored)[touching]
+    assert touching.sum() >= 2
+    np.testing.assert_allclose(constant, constant[0], rtol=1e-12)
+    assert (moving + stored)[touching].min() < (1.0 - 0.01 * share**2) * stored[0]
 
 
 @settings(deadline=None)

