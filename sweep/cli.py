@@ -30,6 +30,7 @@ SETTINGS = {
 }
 STUDIES = "studies"
 EVERYTHING, FIGURE = "everything", r"(fig|table)\d+"  # modules of a paper of several studies
+PLAIN = "lin"  # the paper whose figures go without its name: fig10 is Lin's, fig1 of another paper parisi-fig1
 jobs_option = click.option("--jobs", type=int, default=2, show_default=True, help="Number of worker processes.")
 dry_option = click.option("--dry-run", is_flag=True, help="Say what there is to do, and do nothing.")
 
@@ -168,7 +169,7 @@ def study(name: str, quick: bool, jobs: int) -> None:
     jamsweep study fig10 --quick
     """  # noqa: D301  click reads \b as a character
     modules = _studies()
-    plain = name.replace("_", "-").removeprefix("lin-")
+    plain = name.replace("_", "-").removeprefix(f"{PLAIN}-")
     require(plain in modules, "study", repr(name), "is not known", f"choose one of {', '.join(modules)}")
     importlib.import_module(modules[plain]).main(quick=quick, jobs=jobs)
 
@@ -176,8 +177,8 @@ def study(name: str, quick: bool, jobs: int) -> None:
 def _studies() -> dict[str, str]:
     """Names of the studies and their modules.
 
-    fig10 is Lin's, studies.lin_fig10. A package is a paper of several: parisi-fig1 is studies.parisi.fig1, and
-    parisi studies.parisi.everything.
+    A package is a paper of several: fig10 is studies.lin.fig10 and lin studies.lin.everything; parisi-fig1 is
+    studies.parisi.fig1 and parisi studies.parisi.everything.
     """
     package = importlib.import_module(STUDIES)
     found: dict[str, str] = {}
@@ -185,16 +186,15 @@ def _studies() -> dict[str, str]:
         if module.ispkg:
             found |= _studies_of_paper(module.name, [f"{path}/{module.name}" for path in package.__path__])
         else:
-            found[module.name.removeprefix("lin_").replace("_", "-")] = f"{STUDIES}.{module.name}"
+            found[module.name.replace("_", "-")] = f"{STUDIES}.{module.name}"
     return dict(sorted(found.items()))
 
 
 def _studies_of_paper(paper: str, path: list[str]) -> dict[str, str]:
     names = [module.name for module in pkgutil.iter_modules(path)]
-    if EVERYTHING not in names:
-        return {}
-    figures = {f"{paper}-{name}": f"{STUDIES}.{paper}.{name}" for name in names if re.fullmatch(FIGURE, name)}
-    return {paper: f"{STUDIES}.{paper}.{EVERYTHING}"} | figures
+    prefix = "" if paper == PLAIN else f"{paper}-"
+    figures = {f"{prefix}{name}": f"{STUDIES}.{paper}.{name}" for name in names if re.fullmatch(FIGURE, name)}
+    return figures | ({paper: f"{STUDIES}.{paper}.{EVERYTHING}"} if EVERYTHING in names else {})
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from studies import lin_fig10
+from studies.lin import fig10
 from studies.presentation import figures
 from studies.presentation.verdicts import Verdict, table
 from tests.measures.planted import PAPER_BLOCKING, column, rising_to
@@ -24,13 +24,13 @@ def planted(blocking=PAPER_BLOCKING, seeds=10, scale=1.0, **flow):
 
 
 def verdict(found, words):
-    (one,) = [v for v in lin_fig10.verdicts(found) if v.statement.startswith(words)]
+    (one,) = [v for v in fig10.verdicts(found) if v.statement.startswith(words)]
     return one
 
 
 @pytest.fixture(scope="module")
 def as_published():
-    return lin_fig10.measure(planted(plateau=0.9))
+    return fig10.measure(planted(plateau=0.9))
 
 
 def test_planted_runs_like_the_papers_are_found_to_be_so(as_published):
@@ -41,18 +41,18 @@ def test_planted_runs_like_the_papers_are_found_to_be_so(as_published):
 
 
 def test_planted_runs_unlike_the_papers_are_not():
-    slow = lin_fig10.measure(planted(scale=1.5))
+    slow = fig10.measure(planted(scale=1.5))
     assert verdict(slow, "clearance time, N = 200, v_d = 1.0").holds is False
-    early = lin_fig10.measure(planted({1.0: 0.5, 1.2: 1.0, 1.4: 1.0, 1.6: 1.0, 1.8: 1.0, 2.0: 1.0}))
+    early = fig10.measure(planted({1.0: 0.5, 1.2: 1.0, 1.4: 1.0, 1.6: 1.0, 1.8: 1.0, 2.0: 1.0}))
     assert verdict(early, "no blocking up to 1.2").holds is False
     assert verdict(early, "blocking appears").holds is False
     assert verdict(early, "clearance time, N = 200, v_d = 1.4").holds is False
-    falling = lin_fig10.measure(planted(least=1.2, plateau=0.9))
+    falling = fig10.measure(planted(least=1.2, plateau=0.9))
     assert verdict(falling, "flow rises up to 1.0 m/s, N = 100").holds is False
 
 
 def test_three_seeds_leave_the_boundaries_open():
-    found = lin_fig10.measure(planted(seeds=3))
+    found = fig10.measure(planted(seeds=3))
     assert verdict(found, "transition from, N = 200").holds is None
     assert "undecided" in verdict(found, "phase separation from, N = 200").found
 
@@ -68,10 +68,10 @@ def test_blocked_runs_do_not_enter_the_mean(as_published):
 def test_the_figure_is_drawn_for_full_and_thin_grids(as_published, tmp_path):
     thin = as_published.sel(N=[100, 200], v_d=[0.6, 1.0, 1.4, 1.8])
     for name, found in (("full.png", as_published), ("thin.png", thin)):
-        figures.draw(lin_fig10.plot, found, tmp_path / name)
+        figures.draw(fig10.plot, found, tmp_path / name)
         assert (tmp_path / name).stat().st_size > 10_000
     with mpl.rc_context(figures.STYLE):
-        figure = lin_fig10.plot(as_published)
+        figure = fig10.plot(as_published)
     assert [axis.get_title() for axis in figure.axes] == ["N = 100", "N = 200", "N = 300"]
     assert "v_d" in figure.axes[1].get_xlabel()
     shares = [text.get_text() for text in figure.axes[1].texts]
@@ -80,8 +80,8 @@ def test_the_figure_is_drawn_for_full_and_thin_grids(as_published, tmp_path):
 
 
 def test_the_quick_grid_is_part_of_the_full_one():
-    for name, values in lin_fig10.QUICK.axes.items():
-        assert set(values) <= set(lin_fig10.GRID.axes[name])
+    for name, values in fig10.QUICK.axes.items():
+        assert set(values) <= set(fig10.GRID.axes[name])
 
 
 def test_a_table_says_yes_no_and_open():

@@ -125,7 +125,7 @@ def test_blocking_must_vanish_and_the_law_of_the_time_is_told(law, holds):
 def test_the_command_knows_every_figure_and_nothing_else_of_the_paper():
     names = [name for name in _studies() if name.startswith("parisi")]
     assert set(names) == {"parisi", *(f"parisi-{name}" for name in everything.ARTEFACTS)}
-    assert _studies()["fig10"] == "studies.lin_fig10"
+    assert _studies()["fig10"] == "studies.lin.fig10"
     for module in map(_studies().get, names):
         assert callable(import_module(module).main)
 
