@@ -17,6 +17,8 @@ from studies.measures.exits import clearance, discharge, time_of_exit
 from studies.measures.facts import outcome_is
 from studies.measures.faster import faster_is_slower
 from studies.measures.flow import flow_before_blocking, flow_in_bins, mean_flow
+from studies.measures.hazard import chances
+from studies.measures.paired import paired_blocking
 from studies.measures.states import states
 from studies.measures.uncertainty import mean_over
 
@@ -28,6 +30,7 @@ __all__ = [
     "blocked_share",
     "blocking_clusters",
     "blocking_probability",
+    "chances",
     "clearance",
     "cluster_probability",
     "contact_counts",
@@ -44,6 +47,7 @@ __all__ = [
     "mean_flow",
     "mean_over",
     "outcome_is",
+    "paired_blocking",
     "states",
     "time_of_exit",
 ]

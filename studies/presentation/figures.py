@@ -34,6 +34,12 @@ def panels(columns: int, width: float = PAGE, height: float = 3.1) -> tuple[Figu
     return figure, list(axes[0])
 
 
+def stacked(rows: int, width: float = COLUMN, height: float = 4.6, same: bool = True) -> tuple[Figure, list[Axes]]:
+    """A figure of panels above each other, with common axes if they show the same."""
+    figure, axes = plt.subplots(rows, 1, figsize=(width, height), sharex=same, sharey=same, squeeze=False)
+    return figure, list(axes[:, 0])
+
+
 def draw(plot: Callable[[xr.Dataset], Figure], found: xr.Dataset, path: Path) -> None:
     """Draw a study's figure in the common style, without a screen, and write it."""
     mpl.use("agg")

@@ -3,13 +3,16 @@
 Times in s, flows in 1/s, v_d in m/s. A pair is a range from least to greatest.
 """
 
-# Fig. 4 and its text: N = 100, v_d = 1; clearance time by strength A (N) of the social force
+# Fig. 4 and its text: N = 100, v_d = 1; clearance time by strength A (N) of the social force; "further increasing the
+# value of A from 300 N to 500 N barely affects the flow rate"
 FIG4_N = 100
 FIG4_V_D = 1.0
+FIG4_A = (200.0, 300.0, 400.0, 500.0)
 FIG4_CLEARANCE_TIME = {200.0: 170.0, 300.0: 120.0, 500.0: 120.0}
 FIG4_FRUIN_SPECIFIC_FLOW = 0.92  # 1/(s m), Fruin's observation that the paper compares with
 
 # Fig. 5 and its text: at 2 m/s clogging is more likely without rotation; at 1 m/s rotation changes nothing
+FIG5_N = 100
 FIG5_V_D_SAME = 1.0
 FIG5_V_D_CLOGS_MORE_WITHOUT_ROTATION = 2.0
 
