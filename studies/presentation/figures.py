@@ -34,6 +34,12 @@ def panels(columns: int, width: float = PAGE, height: float = 3.1) -> tuple[Figu
     return figure, list(axes[0])
 
 
+def grid(rows: int, columns: int, width: float, height: float) -> tuple[Figure, list[list[Axes]]]:
+    """A figure of rows and columns of panels with common axes."""
+    figure, axes = plt.subplots(rows, columns, figsize=(width, height), sharex=True, sharey=True, squeeze=False)
+    return figure, [list(row) for row in axes]
+
+
 def stacked(rows: int, width: float = COLUMN, height: float = 4.6, same: bool = True) -> tuple[Figure, list[Axes]]:
     """A figure of panels above each other, with common axes if they show the same."""
     figure, axes = plt.subplots(rows, 1, figsize=(width, height), sharex=same, sharey=same, squeeze=False)
