@@ -26,6 +26,7 @@ ROOMS = {"lin": (rooms.lin_room, rooms.LIN_2016), "parisi": (rooms.parisi_room, 
 MODEL_NAMES = {"lin": "Lin's model", "parisi": "Parisi's model"}
 ROOM_NAMES = {"lin": "15 m room, 1 m exit", "parisi": "20 m room, 1.2 m exit"}
 HEIGHT = 4.4  # in
+FOREVER = 1e9  # s: a crowd that blocked does not get out sooner than any other (Lin et al.: its time is infinite)
 TOP = 0.93  # of the panel's height, where blocked shares stand
 LEAST_RUNS = measures.Rules().least_runs  # out of a cell, for an interval to be drawn
 
@@ -56,7 +57,8 @@ QUICK = Grid(either_room, **KINDS, v_d=[0.8, 1.5, 3.0], seed=range(2))
 
 def measure(ds: xr.Dataset) -> xr.Dataset:
     """Clearance times of the runs that got out, blocked shares, where time is least and where blocking begins."""
-    least = measures.faster_is_slower(ds, N)
+    stuck = measures.outcome_is(ds, "blocked", "frozen")
+    least = measures.faster_is_slower(ds.assign(end_time=ds.end_time.where(~stuck, FOREVER)), N)
     states = measures.states(ds)
     names = [name for name in states if str(name).startswith("phase_separation_from")]
     minimum = {name: least[name] for name in least if str(name).startswith("v_dt")}
@@ -99,8 +101,8 @@ def _panel(axis: Axes, column: xr.Dataset) -> None:
         column.v_d, mean, np.nan_to_num(arms), fmt="o-", ms=3, color="black", capsize=2, lw=1, label=label
     )
     _shares(axis, column)
-    _range(axis, column, "v_dt", figures.BLUE, "least time, 95 %")
-    _range(axis, column, "phase_separation_from", figures.ORANGE, "blocking begins, 95 %")
+    _range(axis, column, "v_dt", 0.14, figures.BLUE, "D", "least time, 95 %")
+    _range(axis, column, "phase_separation_from", 0.06, figures.ORANGE, "s", "blocking begins, 95 %")
 
 
 def _shares(axis: Axes, column: xr.Dataset) -> None:
@@ -116,13 +118,14 @@ def _shares(axis: Axes, column: xr.Dataset) -> None:
             )
 
 
-def _range(axis: Axes, column: xr.Dataset, name: str, colour: str, label: str) -> None:
-    """The interval of a boundary, as a band that is cut at the ends of the scan."""
-    low, high = (float(column[f"{name}_{end}"]) for end in ("low", "high"))
-    first, last = float(column.v_d[0]), float(column.v_d[-1])
-    if np.isfinite(float(column[name])):
-        axis.axvspan(max(low, first), min(high, last), color=colour, alpha=0.2, lw=0)
-    axis.fill_between([], [], color=colour, alpha=0.3, lw=0, label=label)
+def _range(axis: Axes, column: xr.Dataset, name: str, height: float, colour: str, marker: str, label: str) -> None:
+    """A boundary and its interval, cut at the ends of the scan, at a height of the panel."""
+    at, low, high = (float(column[f"{name}{end}"]) for end in ("", "_low", "_high"))
+    style = {"fmt": marker, "ms": 3.5, "capsize": 2, "lw": 1, "color": colour}
+    if np.isfinite(at):
+        arms = [[at - max(low, float(column.v_d[0]))], [min(high, float(column.v_d[-1])) - at]]
+        axis.errorbar([at], [height], xerr=arms, transform=axis.get_xaxis_transform(), **style)
+    axis.errorbar([], [], xerr=[[], []], label=label, **style)
 
 
 # --- Verdicts -----------------------------------------------------------------------------------------------
@@ -176,8 +179,9 @@ def _frozen(column: xr.Dataset, model: str, room: str) -> Verdict:
     slow, fast = column.isel(v_d=0), column.isel(v_d=-1)
     shares = f"{blocked_words(slow)} at {float(slow.v_d):g}, {blocked_words(fast)} at {float(fast.v_d):g} m/s"
     at, low, high = (float(column[f"phase_separation_from{end}"]) for end in ("", "_low", "_high"))
-    begins = f"begins at {interval(at, low, high, 2)} m/s" if np.isfinite(at) else _decision(column)
     rises = larger(fast, slow, "blocked_share")
+    begins = f"begins at {interval(at, low, high, 2)} m/s" if np.isfinite(at) else _decision(column)
+    begins = "falls with v_d" if rises is False else begins
     none = at == np.inf and int(column.blocked.sum()) == 0
     return Verdict(statement, said, f"{shares}; {begins}", False if none else rises)
 

@@ -29,7 +29,7 @@ SETTINGS = {
     "token_normalize_func": lambda word: word.replace("_", "-"),
 }
 STUDIES = "studies"
-EVERYTHING, FIGURE = "everything", r"(fig|table)\d+"  # modules of a paper of several studies
+EVERYTHING, FIGURE = "everything", r"(fig|table)\d+|hazard"  # modules of a paper of several studies
 PLAIN = "lin"  # the paper whose figures go without its name: fig10 is Lin's, fig1 of another paper parisi-fig1
 jobs_option = click.option("--jobs", type=int, default=2, show_default=True, help="Number of worker processes.")
 dry_option = click.option("--dry-run", is_flag=True, help="Say what there is to do, and do nothing.")

@@ -1,49 +1,38 @@
 """Figure 10 of Lin, Ma & Lo (2016): mean flow against desired speed, and the three states of the crowd."""
 
-from pathlib import Path
+import sys
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engine import rooms
 from studies import measures
+from studies.lin import artefact
+from studies.lin.sweeps import Sweeps
 from studies.presentation import figures
-from studies.presentation.verdicts import Verdict, interval, table
+from studies.presentation.estimates import at as between
+from studies.presentation.verdicts import Verdict, interval
 from studies.published import lin2016 as paper
-from sweep import Grid, sweep
 
-FOLDER = Path("results/fig10")
-GRID = Grid(rooms.lin_room, v_d=[0.6, 0.8, 1.0, 1.2, 1.4, 1.6, 1.8, 2.0], N=[100, 200, 300], seed=range(10))
-QUICK = Grid(rooms.lin_room, v_d=[0.6, 1.0, 1.4, 1.8], N=[100, 200], seed=range(3))
-TOLERANCE = 0.2  # of a published clearance time
-THINNED = "\n\nA thinned grid of three seeds: it shows that all works; README.md has the verdicts of the full study."
-LEAST_RUNS = 5  # out of a cell, for an interval to be drawn
+LEAST_RUNS = measures.Rules().least_runs  # out of a cell, for an interval to be drawn
 TELLING = 0.5  # m/s, width of an interval that still tells something
-WIDE_ENOUGH = 1e-9  # m/s, for comparing axis values
 BOUNDARIES = (("transition_from", "transition"), ("phase_separation_from", "phase_separation"))
 PALE = 0.45
 STATE_COLOURS = {"smooth": figures.GREEN, "transition": figures.BLUE, "phase_separation": figures.ORANGE}
 
 
-def measure(ds: xr.Dataset) -> xr.Dataset:
+def measure(sweeps: Sweeps) -> xr.Dataset:
+    """All cells of the sweep over v_d and N, and the states of each N."""
+    ds = sweeps.speeds
+    return classified(ds).assign_attrs(title=f"thinned: {ds.outcome.size} runs" if sweeps.quick else "")
+
+
+def classified(ds: xr.Dataset) -> xr.Dataset:
     """Mean flow of every run, its mean over the runs that got out, blocked share, clearance time and states."""
-    flow, clearance = measures.mean_flow(ds), measures.clearance(ds)
-    out = measures.outcome_is(ds, "all_out")
-    means = measures.mean_over(flow.mean_flow.where(out), censored=flow.censored)
-    times = measures.mean_over(clearance.clearance_time.where(out), censored=clearance.censored)
-    shares = measures.blocked_share(ds)
-    return xr.Dataset(
-        {
-            "flow_of_run": flow.mean_flow,
-            "out": means.runs,
-            **{name: means[name] for name in means if str(name).startswith("mean_flow")},
-            **{name: times[name] for name in times if str(name).startswith("clearance_time")},
-            **shares.data_vars,
-            **measures.states(ds).drop_vars([*shares.data_vars], errors="ignore").data_vars,
-        }
-    )
+    states = measures.states(ds)
+    own = [name for name in states if name not in ("runs", "blocked", "censored")]
+    return artefact.cells(ds).assign(states[own].data_vars)
 
 
 # --- Figure -------------------------------------------------------------------------------------------------
@@ -161,22 +150,15 @@ def _boundaries() -> list[tuple[str, str, float]]:
 
 def _cells(found: xr.Dataset, low: float, high: float, **where: int) -> xr.Dataset:
     """The cells with v_d in [low, high]."""
-    return found.sel(where).sortby("v_d").sel(v_d=slice(low - WIDE_ENOUGH, high + WIDE_ENOUGH))
+    return between(found.sel(where).sortby("v_d"), low, high)
 
 
 def _clearance(found: xr.Dataset, v_d: float, published: float) -> Verdict:
     statement = f"clearance time, N = 200, v_d = {v_d} m/s"
-    said = f"{published:.0f} s +- {100 * TOLERANCE:.0f} %"
     cell = _cells(found, v_d, v_d, N=200)
     if not cell.v_d.size:
-        return Verdict(statement, said, "not in this grid", None)
-    if not np.isfinite(cell.clearance_time.item()):
-        return Verdict(statement, said, "no run got out", False)
-    mean, low, high = (float(cell[f"clearance_time{end}"].item()) for end in ("", "_low", "_high"))
-    runs = int(cell.runs.item())
-    out = runs - int(cell.blocked.item()) - int(cell.censored.item())
-    text = f"{interval(mean, low, high)} s, {out} of {runs} runs out"
-    return Verdict(statement, said, text, abs(mean / published - 1) <= TOLERANCE)
+        return Verdict(statement, f"{published:.0f} s", "not in this grid", None)
+    return artefact.published_time(statement, cell, published)
 
 
 def _rises(column: xr.Dataset) -> Verdict:
@@ -259,10 +241,5 @@ def _boundary(column: xr.Dataset, name: str, words: str, published: float) -> Ve
 
 
 def main(quick: bool = False, jobs: int = 2) -> None:
-    """Sweep what is missing, draw the figure, print the verdicts. The quick grid is part of the full one."""
-    grid = QUICK if quick else GRID
-    found = measure(sweep(grid, FOLDER, jobs=jobs)).assign_attrs(title=f"thinned: {len(QUICK)} runs" if quick else "")
-    figures.draw(plot, found, FOLDER / "figure.png")
-    text = table(verdicts(found)) + (THINNED if quick else "")
-    (FOLDER / "table.txt").write_text(text + "\n", "utf-8")
-    print(text, f"\n{FOLDER / 'figure.png'}", sep="\n")
+    """Draw the figure and print its verdicts."""
+    artefact.main(sys.modules[__name__], quick, jobs)
