@@ -89,20 +89,24 @@ def step_weights(runs: Ints, blocked: Ints, rules: Rules) -> Floats:
 def phase_separation(v_d: Floats, runs: Ints, blocked: Ints, rules: Rules) -> Boundary:
     """Where blocking is established: a step fit over all cells.
 
-    A grid tells of a step no more than the two cells it lies between. The boundary is the middle of the
-    likeliest gap, and its interval is made of whole gaps: those left when the least likely ends, together
-    less than 1 - confidence, are cut off. No bootstrap: cells without a blocked run have none in any
-    resample, and so would claim that none of 10 runs proves a share of 0.
+    A grid tells of a step no more than the two cells it lies between: the boundary is the middle of the likeliest
+    gap. Its interval is made of whole gaps, that one and all which the likelihood ratio does not rule out, in a
+    second fit with shares up to `established` below the step. For where blocking sets in gradually, cells have
+    shares between `stray` and `established`; the first fit takes them for blocking at any number of runs, and an
+    interval of its own misses the cell at which the share passes `established` more often than not. No bootstrap:
+    cells without a blocked run have none in any resample, and so would claim that none of 10 runs proves a share
+    of 0.
 
     Parameters
     ----------
     v_d : (cells,) float, m/s, ascending
     runs, blocked : (cells,) int
     """
-    weights = step_weights(runs, blocked, rules)
     edges = np.concatenate([[-np.inf], v_d, [np.inf]])
-    best = int(weights.argmax())
-    first, last = np.searchsorted(weights.cumsum(), [rules.beyond, 1.0 - rules.beyond])
+    best = int(step_weights(runs, blocked, rules).argmax())
+    lenient = step_weights(runs, blocked, rules._replace(stray=rules.established))
+    likely = np.flatnonzero(lenient >= lenient.max() * np.exp(-stats.chi2.ppf(rules.confidence, 1) / 2.0))
+    first, last = min(best, likely[0]), max(best, likely[-1])
     where = {0: "below_range", v_d.size: "above_range"}.get(best, "decided")
     middle = (edges[best] + edges[best + 1]) / 2.0
     return judged(Boundary(float(middle), float(edges[first]), float(edges[last + 1]), where), v_d, rules)

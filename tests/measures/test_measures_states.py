@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from studies.measures import Rules, states
-from studies.measures.boundaries import resampled_means
+from studies.measures.boundaries import phase_separation, resampled_means
 from tests.measures.planted import PAPER_BLOCKING, PAPER_V_D, column, rising_to, with_blocked
 
 QUICK = Rules(resamples=600)
@@ -28,14 +28,30 @@ def one(found: xr.Dataset, name: str) -> tuple[float, float, float]:
     return tuple(float(found[f"{name}{end}"].squeeze()) for end in ("_low", "", "_high"))
 
 
-@pytest.mark.parametrize("noise", [0.04, 0.08])
-def test_planted_boundaries_are_found(noise):
-    found = states(column(rising_to(1.0), PAPER_BLOCKING, noise=noise, copies=60), rules=QUICK)
+GRADUAL = {1.4: 0.03, 1.6: 0.2, 1.8: 0.5}  # no cell of which is the first that blocks
+LATE = {1.6: 0.1, 1.8: 0.5, 2.0: 0.95}
+EARLY = {1.2: 0.02, 1.4: 0.1, 1.6: 0.29, 1.8: 0.6, 2.0: 0.9}
+
+
+@pytest.mark.parametrize("noise", [0.06])
+def test_planted_boundaries_are_inside_the_interval_in_nine_of_ten_of_200_columns(noise):
+    found = states(column(rising_to(1.0), PAPER_BLOCKING, noise=noise, copies=200), rules=QUICK._replace(resamples=300))
     assert (found.transition_from_decision == 0).mean() >= 0.9
     assert covered(found, "transition_from", 1.0) >= 0.9
     assert covered(found, "phase_separation_from", 1.4, 1.6) >= 0.9
     assert abs(float(found.transition_from.median()) - 1.0) < 0.05
     assert float(found.phase_separation_from.median()) == pytest.approx(1.5)
+
+
+@pytest.mark.parametrize("blocking", [GRADUAL, LATE, EARLY], ids=["gradual", "late", "early"])
+@pytest.mark.parametrize("runs", [5, 10, 20])
+def test_blocking_that_sets_in_gradually_is_established_inside_the_interval(blocking, runs):
+    share = np.array([blocking.get(float(v), 0.0) for v in PAPER_V_D])
+    first = int((share >= Rules().established).argmax())
+    rng, of_each = np.random.default_rng(runs), np.full(PAPER_V_D.size, runs)
+    columns = [phase_separation(PAPER_V_D, of_each, rng.binomial(runs, share), Rules()) for _ in range(200)]
+    held = [b.low <= PAPER_V_D[first - 1] and b.high >= PAPER_V_D[first] for b in columns]
+    assert np.mean(held) >= 0.9
 
 
 @pytest.mark.parametrize(
@@ -144,7 +160,7 @@ def test_a_flow_that_rises_ever_slower_has_no_plateau():
 
 
 def test_a_cell_with_few_runs_is_undecided_and_leaves_a_wider_gap():
-    ds = with_blocked(column(rising_to(1.0), FREE), {1.6: 4, 1.8: 8, 2.0: 10})
+    ds = with_blocked(column(rising_to(1.0), FREE), {1.6: 7, 1.8: 8, 2.0: 10})
     ds.outcome.loc[{"v_d": [1.4, 2.0], "seed": slice(3, None)}] = 0
     found = states(ds, rules=FAST)
     assert words(found.state.sel(v_d=[1.4, 1.6, 2.0])) == ["undecided", "phase_separation", "undecided"]
