@@ -10,7 +10,7 @@ from studies import measures
 from studies.lin.sweeps import Sweeps
 from studies.presentation import figures
 from studies.presentation.artefact import main as draw_and_tell
-from studies.presentation.estimates import NEAR
+from studies.presentation.estimates import NEAR, said
 from studies.presentation.verdicts import Verdict, interval
 
 TOLERANCE = 0.2  # of a published clearance time
@@ -68,21 +68,20 @@ def published_time(statement: str, cell: xr.Dataset, published: float, tolerance
 
     It agrees if the mean lies within the tolerance; outside, it stays open while the interval reaches in.
     """
-    said = f"{published:.0f} s +- {100 * tolerance:.0f} %"
+    expected = f"{published:.0f} s +- {100 * tolerance:.0f} %"
     mean, low, high = (float(cell[f"clearance_time{end}"].item()) for end in ("", "_low", "_high"))
     runs, out = int(cell.runs.item()), int(cell.out.item())
     if not np.isfinite(mean):
-        return Verdict(statement, said, f"none of {runs} runs got out", False if runs else None)
+        return Verdict(statement, expected, f"none of {runs} runs got out", False if runs else None)
     near, far = published * (1 - tolerance) - NEAR, published * (1 + tolerance) + NEAR
     reaches = np.isfinite(low) and low <= far and high >= near
     holds = True if near <= mean <= far else (None if reaches else False)
-    return Verdict(statement, said, f"{interval(mean, low, high)} s, {out} of {runs} runs out", holds)
+    return Verdict(statement, expected, f"{interval(mean, low, high)} s, {out} of {runs} runs out", holds)
 
 
 def blocked_words(cell: xr.Dataset) -> str:
     """A blocked share with its interval: "4 of 10 runs, 0.40 [0.17, 0.69]"."""
-    share = interval(*(float(cell[f"blocked_share{end}"]) for end in ("", "_low", "_high")), 2)
-    return f"{int(cell.blocked)} of {int(cell.runs)} runs, {share}"
+    return f"{int(cell.blocked)} of {int(cell.runs)} runs, {said(cell, 'blocked_share')}"
 
 
 def grey_cross(axis: Axes, label: str = "blocked") -> None:

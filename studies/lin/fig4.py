@@ -20,7 +20,7 @@ TITLES = {WALLS[0]: "walls push as strongly as persons", WALLS[1]: "walls push w
 
 
 def measure(sweeps: Sweeps) -> xr.Dataset:
-    """Mean time of each exit, of the runs that reached it; clearance times; their ratio to that of 300 N, seed by seed."""
+    """Mean time of each exit, of the runs that reached it; clearance times, their ratio to 300 N by seed."""
     ds = sweeps.strengths
     ranks = measures.time_of_exit(ds, list(range(1, paper.FIG4_N + 1)))
     means = measures.mean_over(ranks.time_of_exit, censored=ranks.censored).drop_vars(["runs", "censored"])
@@ -32,7 +32,7 @@ def measure(sweeps: Sweeps) -> xr.Dataset:
 
 
 def plot(found: xr.Dataset) -> Figure:
-    """Mean leaving curves with intervals, and the published clearance times; the two readings of walls below each other."""
+    """Mean leaving curves with intervals, and the published times; the two readings of walls below each other."""
     figure, axes = figures.stacked(2, height=artefact.HEIGHT)
     for axis, walls in zip(axes, WALLS, strict=True):
         _curves(axis, found.sel(walls=walls))

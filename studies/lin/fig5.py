@@ -10,6 +10,7 @@ from studies import measures
 from studies.lin import artefact
 from studies.lin.sweeps import TURNING, Sweeps
 from studies.presentation import figures
+from studies.presentation.estimates import said
 from studies.presentation.verdicts import Verdict, interval
 from studies.published import lin2016 as paper
 
@@ -60,21 +61,20 @@ def verdicts(found: xr.Dataset) -> list[Verdict]:
 
 def _same_time(cell: xr.Dataset) -> Verdict:
     ratio, low, high = (float(cell[f"longer{end}"]) for end in ("", "_low", "_high"))
-    statement, said = "1 m/s: clearance time without rotation over that with it", f"1 +- {SAME:g}"
+    statement, expected = "1 m/s: clearance time without rotation over that with it", f"1 +- {SAME:g}"
     if not np.isfinite([low, high]).all():
-        return Verdict(statement, said, "too few pairs of runs out", None)
-    inside, beyond = 1 - SAME <= low and high <= 1 + SAME, low > 1 + SAME or high < 1 - SAME
+        return Verdict(statement, expected, "too few pairs of runs out", None)
+    inside, beyond = low >= 1 - SAME and high <= 1 + SAME, low > 1 + SAME or high < 1 - SAME
     text = f"{interval(ratio, low, high, 2)}, {int(cell.pairs_out)} pairs"
-    return Verdict(statement, said, text, True if inside else (False if beyond else None))
+    return Verdict(statement, expected, text, True if inside else (False if beyond else None))
 
 
 def _words(cell: xr.Dataset) -> str:
     """Blocked runs of both kinds, difference of the shares, test."""
     kinds = {kind: cell.sel(inertia=kind) for kind in (OFF, ON)}
     numbers = " and ".join(f"{int(of.blocked)} of {int(of.runs)}" for of in kinds.values())
-    difference = interval(*(float(cell[f"difference{end}"]) for end in ("", "_low", "_high")), 2)
     p = f"p = {float(cell.p_value):.1g}" if cell.p_value >= 1e-4 else "p < 1e-4"
-    return f"{numbers}, difference {difference}, {p}"
+    return f"{numbers}, difference {said(cell, 'difference')}, {p}"
 
 
 def _same_share(cell: xr.Dataset) -> Verdict:

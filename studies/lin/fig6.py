@@ -1,4 +1,4 @@
-"""Figure 6 of Lin, Ma & Lo (2016): 200 persons at 0, 30, 60 and 120 s, drawn to scale with the forces of their contacts."""
+"""Figure 6 of Lin, Ma & Lo (2016): 200 persons at 0, 30, 60 and 120 s, to scale, with the forces of contacts."""
 
 import sys
 

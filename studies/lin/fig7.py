@@ -22,7 +22,7 @@ def measure(sweeps: Sweeps) -> xr.Dataset:
 
 def plot(found: xr.Dataset) -> Figure:
     """Both panels, with the published times."""
-    plateau = {v: paper.FIG7_PLATEAU_CLEARANCE_TIME for v in at(found, *PLATEAU).v_d.values.tolist()}
+    plateau = dict.fromkeys(at(found, *PLATEAU).v_d.values.tolist(), paper.FIG7_PLATEAU_CLEARANCE_TIME)
     return leaving.plot(found, paper.FIG7_CLEARANCE_TIME | plateau)
 
 
@@ -44,7 +44,9 @@ def falls(found: xr.Dataset) -> Verdict:
     """Clearance time falls in the smooth state."""
     cells = at(found, *paper.SMOOTH_V_D)
     falling = bool((np.diff(cells.clearance_time.values) < 0).all()) if cells.v_d.size > 1 else None
-    return Verdict("clearance time falls from 0.6 to 1.0 m/s", "falling", f"{each(cells, 'clearance_time', 0)} s", falling)
+    return Verdict(
+        "clearance time falls from 0.6 to 1.0 m/s", "falling", f"{each(cells, 'clearance_time', 0)} s", falling
+    )
 
 
 def _blocked(found: xr.Dataset) -> Verdict:

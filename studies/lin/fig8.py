@@ -47,7 +47,9 @@ def _no_faster(found: xr.Dataset) -> Verdict:
 def _bistable(found: xr.Dataset) -> Verdict:
     """Runs of one v_d both block and get out, in the phase separation state."""
     cells = at(found, *BISTABLE)
-    text = ", ".join(f"{float(v):g}: {int(k)} of {int(n)}" for v, k, n in zip(cells.v_d, cells.blocked, cells.runs, strict=True))
+    text = ", ".join(
+        f"{float(v):g}: {int(k)} of {int(n)}" for v, k, n in zip(cells.v_d, cells.blocked, cells.runs, strict=True)
+    )
     mixed = bool(((cells.blocked > 0) & (cells.blocked < cells.runs)).any()) if cells.v_d.size else None
     return Verdict("runs both blocked and free at one v_d from 1.6 m/s", "yes", f"blocked at {text}", mixed)
 

@@ -34,7 +34,7 @@ def measure(sweeps: Sweeps) -> xr.Dataset:
 
 
 def plot(found: xr.Dataset) -> Figure:
-    """For each N: one box a desired speed (least, 5 %, median, 95 %, greatest bin of all runs) over the published ranges."""
+    """For each N: a box a desired speed (5 %, median, 95 % of the bins of all runs) over the published ranges."""
     figure, axes = figures.stacked(found.N.size, height=HEIGHT)
     for axis, N in zip(axes, found.N.values, strict=True):
         _published(axis, float(found.v_d.max()))

@@ -14,7 +14,7 @@ from studies.measures.blocking import run_counts
 from studies.measures.hazard import CONSTANT, CROWD, POWERS, Law, fit, predicted
 from studies.measures.uncertainty import poisson
 from studies.presentation import figures
-from studies.presentation.estimates import STYLES, V_D
+from studies.presentation.estimates import STYLES, V_D, said
 from studies.presentation.verdicts import Verdict, interval
 
 LEVEL, CLEAR = 0.05, 0.2  # of the test: below, a law is ruled out; between, left open
@@ -37,7 +37,9 @@ def judged(ds: xr.Dataset) -> xr.Dataset:
     laws = {name: _fitted(counts, sizes, powers) for name, (sizes, powers) in TRAINED.items()}
     whole = {name: fit(counts.sum("N"), powers) for name, powers in (("constant", CONSTANT), ("crowd", POWERS))}
     made = [
-        xr.concat([_against(laws[name], int(N), runs.sel(N=N)) for N in ds.N.values], "N", coords="minimal", compat="override")
+        xr.concat(
+            [_against(laws[name], int(N), runs.sel(N=N)) for N in ds.N.values], "N", coords="minimal", compat="override"
+        )
         for name in laws
     ]
     found = xr.concat(made, "law", coords="minimal", compat="override")
@@ -100,19 +102,19 @@ def _hazards(axis: Axes, found: xr.Dataset) -> None:
     axis.set(xlabel="persons inside $n$", ylabel="hazard of blocking per exit", yscale="log", ylim=(LEAST, 1.0))
     axis.set_title(f"points: all $N$, 95 %; lines: $n^{{{float(found.power[0]):.1f}}}$", loc="left")
     if drawn:
-        axis.legend(loc="lower right", ncols=2, columnspacing=1.0)
+        axis.legend(loc="upper left", ncols=2, columnspacing=1.0)
 
 
 def _shares(axis: Axes, found: xr.Dataset) -> None:
-    for k, ((colour, marker, line), N) in enumerate(zip(STYLES, found.N.values, strict=False)):
+    for k, ((colour, marker, _), N) in enumerate(zip(STYLES, found.N.values, strict=False)):
         column = found.sel(N=N)
         at = found.v_d.values + 0.02 * (k - 1)
         share = column.blocked_share.values
         arms = np.abs([share - column.blocked_share_low, column.blocked_share_high - share])
         axis.errorbar(at, share, arms, fmt=marker, ms=3.5, capsize=2, lw=0.8, color=colour, label=f"$N$ = {N}, 95 %")
         crowd, constant = column.sel(law="crowd"), column.sel(law="constant")
-        axis.plot(found.v_d, crowd.predicted_share, color=colour, ls="-", lw=1.2)
-        axis.plot(found.v_d, constant.predicted_share, color=colour, ls=":", lw=1.2)
+        axis.plot(found.v_d, crowd.likeliest_share, color=colour, ls="-", lw=1.2)
+        axis.plot(found.v_d, constant.likeliest_share, color=colour, ls=":", lw=1.2)
     axis.plot([], [], color=figures.GREY, lw=1.2, label="from $N$ = 200, grows with $n$")
     axis.plot([], [], color=figures.GREY, ls=":", lw=1.2, label="from $N$ = 100, constant")
     axis.set(xlabel=V_D, ylabel="blocked share", ylim=(-0.03, 1.03))
@@ -137,10 +139,10 @@ def verdicts(found: xr.Dataset) -> list[Verdict]:
 
 def _prediction(column: xr.Dataset, statement: str) -> Verdict:
     blocked, runs = int(column.blocked.sum()), int(column.runs.sum())
-    said = f"predicted {float(column.total):.0f} [{float(column.total_low):.0f}, {float(column.total_high):.0f}] of {runs} blocked"
+    expected = f"predicted {said(column, 'total', 0)} of {runs} blocked"
     p = float(column.p_value)
     holds = False if p < LEVEL else (True if p >= CLEAR else None)
-    return Verdict(statement, said, f"{blocked} of {runs} blocked, p = {p:.2g}", holds if runs else None)
+    return Verdict(statement, expected, f"{blocked} of {runs} blocked, p = {p:.2g}", holds if runs else None)
 
 
 def _power(found: xr.Dataset) -> Verdict:

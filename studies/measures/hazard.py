@@ -1,10 +1,10 @@
 """Blocking as a hazard per exit that may grow with the number of persons who are still inside.
 
 Every exit is a chance to block. With n persons inside, a chance is passed with probability exp(-lambda (n/100)^g),
-so that a crowd of N blocks with probability 1 - exp(-lambda S(N)), S(N) = sum over n = 1..N of (n/100)^g. With g = 0 the
-hazard per exit, 1 - exp(-lambda), is the same for everybody: the law of silos (Zuriguel et al. 2014). A run has N chances: before the
-first exit, and after each but the last. One that blocks after k exits passed k and failed the next, one that ends
-at the time limit after k passed k, and one that completes passed all.
+so that a crowd of N blocks with probability 1 - exp(-lambda S(N)), S(N) = sum over n = 1..N of (n/100)^g. With g = 0
+the hazard per exit, 1 - exp(-lambda), is the same for everybody. A run has N chances: before the first exit, and after
+each but the last. One that blocks after k exits passed k and failed the next, one that ends at the time limit after k
+passed k, and one that completes passed all.
 """
 
 from collections.abc import Sequence
@@ -53,8 +53,8 @@ def chances(ds: xr.Dataset, over: Over = "seed", along: str = "v_d") -> xr.Datas
 
     Returns
     -------
-    Dataset with `passed` and `failed` (axes..., inside), numbers of chances, over `inside` = 1, 2, ... up to the largest
-    crowd; missing and unstable runs have none.
+    Dataset with `passed` and `failed` (axes..., inside), numbers of chances, over `inside` = 1, 2, ... up to the
+    largest crowd; missing and unstable runs have none.
 
     Raises
     ------
@@ -183,10 +183,10 @@ def predicted(law: Law, N: int, blocked: Ints, runs: Ints, confidence: float = 0
 
     Returns
     -------
-    Dataset with `predicted_share` and `_low`, `_high` (v_d): mean and percentiles over the posterior;
-    `predicted_runs_low`, `_high` (v_d): interval of the number of blocked runs among `runs`; `total`, `total_low`,
-    `total_high`: of blocked runs in all cells; and `p_value`: the share of drawn sets of runs that are as unlikely under
-    the prediction as those found, or more so. A small one rules the law out.
+    Dataset with `likeliest_share` (v_d), of the maximum of the likelihood; `predicted_share` and `_low`, `_high` (v_d):
+    mean and percentiles over the posterior; `predicted_runs_low`, `_high` (v_d): interval of the number of blocked runs
+    among `runs`; `total`, `total_low`, `total_high`: of blocked runs in all cells; and `p_value`: the share of drawn
+    sets of runs that are as unlikely under the prediction as those found, or more so. A small one rules the law out.
     """
     check_resampling(confidence)
     rng, ends = np.random.default_rng(seed), [(1.0 - confidence) / 2.0, (1.0 + confidence) / 2.0]
@@ -199,6 +199,7 @@ def predicted(law: Law, N: int, blocked: Ints, runs: Ints, confidence: float = 0
     least, most = np.quantile(made.sum(axis=1), ends)
     return xr.Dataset(
         {
+            "likeliest_share": ("v_d", share_of(law.rate, law.power, N)),
             "predicted_share": ("v_d", mean),
             "predicted_share_low": ("v_d", low),
             "predicted_share_high": ("v_d", high),

@@ -11,8 +11,8 @@ from studies.measures.uncertainty import check_resampling, wilson
 def newcombe(both: int, first: int, second: int, neither: int, confidence: float) -> tuple[float, float, float]:
     """Difference of two paired shares and its limits: method 10 of Newcombe (1998), Stat. Med. 17, 2635.
 
-    Wilson's limits of the two shares, joined with the correlation of the pairs; `first` and `second` are the numbers of pairs
-    in which only the first, or only the second, is a hit.
+    Wilson's limits of the two shares, joined with the correlation of the pairs; `first` and `second` are the numbers of
+    pairs in which only the first, or only the second, is a hit.
     """
     n = both + first + second + neither
     if n == 0:
@@ -21,8 +21,7 @@ def newcombe(both: int, first: int, second: int, neither: int, confidence: float
     (p_low, p_high), (q_low, q_high) = wilson(both + first, n, confidence), wilson(both + second, n, confidence)
     margins = float((both + first) * (second + neither) * (both + second) * (first + neither))
     product = both * neither - first * second
-    product = max(product - n / 2, 0.0) if product > 0 else float(product)
-    phi = product / np.sqrt(margins) if margins > 0 else 0.0
+    phi = (max(product - n / 2, 0.0) if product > 0 else float(product)) / np.sqrt(margins) if margins > 0 else 0.0
 
     def arm(of_p: float, of_q: float) -> float:
         return float(np.sqrt(max(of_p**2 - 2.0 * phi * of_p * of_q + of_q**2, 0.0)))
@@ -76,8 +75,8 @@ def paired_blocking(
     }
     counts = xr.Dataset({name: count(truth, dims, text) for name, (truth, text) in tables.items()})
     limits = xr.apply_ufunc(
-        lambda *cell: newcombe(*map(int, cell), confidence),
-        *counts.data_vars.values(),
+        lambda *cell: _limits(cell, confidence),
+        *(counts[name] for name in ("both", "only_first", "only_second", "neither")),
         output_core_dims=[[]] * 3,
         vectorize=True,
         output_dtypes=[np.float64] * 3,
@@ -91,6 +90,11 @@ def paired_blocking(
         p_value=described(p, "1", "exact McNemar test of equal shares"),
         pairs=count(pair, dims, "pairs of runs"),
     )
+
+
+def _limits(cell: tuple[int, ...], confidence: float) -> tuple[float, float, float]:
+    both, first, second, neither = map(int, cell)
+    return newcombe(both, first, second, neither, confidence)
 
 
 def _mcnemar(first: int, second: int) -> float:

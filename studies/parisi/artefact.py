@@ -7,7 +7,21 @@ from studies.presentation.artefact import THINNED, make
 from studies.presentation.artefact import main as draw_and_tell
 from studies.presentation.estimates import NEAR, STYLES, V_D, at, each, larger, points, said, within
 
-__all__ = ["HEIGHT", "NEAR", "STYLES", "THINNED", "V_D", "at", "each", "larger", "main", "make", "points", "said", "within"]
+__all__ = [
+    "HEIGHT",
+    "NEAR",
+    "STYLES",
+    "THINNED",
+    "V_D",
+    "at",
+    "each",
+    "larger",
+    "main",
+    "make",
+    "points",
+    "said",
+    "within",
+]
 HEIGHT = 2.6  # in
 
 

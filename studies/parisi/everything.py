@@ -7,7 +7,8 @@ from pathlib import Path
 
 from studies.parisi import artefact, table1
 from studies.parisi.sweeps import EVERY, Sweeps
-from studies.presentation.verdicts import MARKS, Verdict, table
+from studies.presentation.page import sections
+from studies.presentation.verdicts import Verdict, table
 from studies.published import parisi2005 as paper
 
 ARTEFACTS = ("table1", *(f"fig{k}" for k in range(1, 11)))
@@ -37,28 +38,7 @@ def make_one(name: str, sweeps: Sweeps) -> list[Verdict]:
 
 def page(found: dict[str, list[Verdict]], readings: str) -> str:
     """The page of the documents."""
-    verdicts = [(name, verdict) for name, several in found.items() for verdict in several]
-    missed = [f"- {v.statement}: published {v.published}; found {v.found}." for _, v in verdicts if v.holds is False]
-    undecided = [f"- {v.statement}: published {v.published}; found {v.found}." for _, v in verdicts if v.holds is None]
-    head = "| where | statement | published | found | |\n|---|---|---|---|---|\n"
-    rows = [f"| {name} | {v.statement} | {v.published} | {v.found} | {mark(v)} |" for name, v in verdicts]
-    return "\n".join(
-        [
-            f"{INTRODUCTION}{readings}\n",
-            "## Not reproduced\n",
-            *(missed or ["Nothing."]),
-            *(["\n## Open\n", *undecided] if undecided else []),
-            "\n## All verdicts\n",
-            head + "\n".join(rows),
-            "",
-        ]
-    )
-
-
-def mark(verdict: Verdict) -> str:
-    """Yes, no or open, the no in bold."""
-    word = MARKS[verdict.holds].lower()
-    return f"**{word}**" if word == "no" else word
+    return f"{INTRODUCTION}{readings}\n\n{sections(found)}"
 
 
 def main(quick: bool = False, jobs: int = 2) -> None:
