@@ -102,7 +102,7 @@ def _panel(axis: Axes, column: xr.Dataset) -> None:
     told = column.out >= LEAST_RUNS
     arms = np.abs([mean - column.clearance_time_low.where(told), column.clearance_time_high.where(told) - mean])
     label = f"their mean, 95 % from {LEAST_RUNS} runs"
-    axis.errorbar(column.v_d, mean, np.nan_to_num(arms), fmt="o-", ms=3, color="black", capsize=2, lw=1, label=label)
+    axis.errorbar(column.v_d, mean, arms, fmt="o-", ms=3, color="black", capsize=2, lw=1, label=label)
     _shares(axis, column)
     _range(axis, column, "v_dt", 0.14, figures.BLUE, "D", "least time, 95 %")
     _range(axis, column, "phase_separation_from", 0.06, figures.ORANGE, "s", "blocking begins, 95 %")

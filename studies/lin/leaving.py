@@ -59,7 +59,7 @@ def _times(axis: Axes, found: xr.Dataset, colours: np.ndarray, published: dict[f
     mean, told = found.clearance_time, found.out >= LEAST_RUNS
     arms = np.abs([mean - found.clearance_time_low.where(told), found.clearance_time_high.where(told) - mean])
     label = "mean of those out, 95 %"
-    axis.errorbar(found.v_d, mean, np.nan_to_num(arms), fmt="-", color="black", capsize=2, lw=1, label=label)
+    axis.errorbar(found.v_d, mean, arms, fmt="-", color="black", capsize=2, lw=1, label=label)
     if published:
         label = "published"
         axis.plot([*published], [*published.values()], "D", mfc="white", mec="black", ms=4, zorder=5, label=label)
