@@ -6,16 +6,26 @@ from dataclasses import replace
 from statistics import median
 from typing import NamedTuple
 
-from engine import Record, Scenario, Scene, Stopping, laws, models
+import numpy as np
+
+from engine import Crowd, Record, Scenario, Scene, Stopping, laws, models
+from engine.crowd import Given
 from engine.rooms import ROOMS
 from studies.precision.clock import at, compile_kernel, timed
 
 ROOM, V_D, N, JAMMED, HALF_OUT = "lin_room", 1.2, 200, 10.0, 200.0  # room, m/s, persons, s, s
 FAR = 40  # wall pieces out of reach
+APART = 1.0  # m, persons on a lattice in which nobody touches
+FROZEN = {"v_d": 6.0, "N": 100, "L": 0.6, "seed": 0}  # of parisi_room: a run that ends at rest
 STILL = models.lin_dem(inertia="none")
 BLIND = models.lin_dem()._replace(vision=laws.Absent())
 SMOOTH = models.lin_dem()._replace(sliding=laws.Absent(), wall_sliding=laws.Absent())
 BARE = STILL._replace(vision=laws.Absent(), sliding=laws.Absent(), wall_sliding=laws.Absent())
+
+
+TOUCHLESS = models.lin_dem()._replace(
+    **dict.fromkeys(("normal", "sliding", "wall_normal", "wall_sliding", "rotation"), laws.Absent())
+)
 
 
 class Saving(NamedTuple):
@@ -33,6 +43,7 @@ class Pair(NamedTuple):
     with_it: Scenario
     without: Scenario
     remark: str = ""
+    whole: bool = False  # whole runs are compared, not their steps
 
 
 def measure(stretch: float, repeats: int, compiling: bool) -> list[Saving]:
@@ -49,7 +60,8 @@ def measure(stretch: float, repeats: int, compiling: bool) -> list[Saving]:
 def _saving(pair: Pair, repeats: int) -> Saving:
     for scenario in pair[1:3]:
         compile_kernel(scenario)
-    turns = [[per_step(scenario) for scenario in pair[1:3]] for _ in range(repeats)]
+    cost = whole if pair.whole else per_step
+    turns = [[cost(scenario) for scenario in pair[1:3]] for _ in range(repeats)]
     return Saving(pair.what, median(a for a, _ in turns) / median(b for _, b in turns), pair.remark)
 
 
@@ -59,12 +71,24 @@ def per_step(scenario: Scenario) -> float:
     return spent / run.steps
 
 
+def whole(scenario: Scenario) -> float:
+    """CPU seconds of a run."""
+    return timed(scenario)[0]
+
+
 def _pairs(jam: Scenario, compiling: bool) -> Iterator[Pair]:
     if compiling:
         yield Pair("bodies that turn", jam, replace(jam, model=STILL), 'inertia "none"')
         yield Pair("vision", jam, replace(jam, model=BLIND), "law absent")
         yield Pair("sliding", jam, replace(jam, model=SMOOTH), "law absent; the crowd moves more freely")
         yield Pair("turning, vision and sliding", jam, replace(jam, model=BARE), "laws absent")
+        apart = replace(jam, crowd=on_a_lattice(), stopping=Stopping(time_limit=jam.stopping.time_limit))
+        yield Pair(
+            "contact laws while nobody touches",
+            apart,
+            replace(apart, model=TOUCHLESS),
+            "laws absent; 1: they cost nothing",
+        )
     walls = replace(jam, scene=with_far_walls(jam.scene))
     yield Pair(f"{FAR} wall pieces out of reach", walls, jam, "1: they cost nothing")
     later = replace(at(ROOMS[ROOM](v_d=V_D, N=N), HALF_OUT, N // 2), stopping=jam.stopping)
@@ -79,6 +103,18 @@ def _pairs(jam: Scenario, compiling: bool) -> Iterator[Pair]:
     for every, contacts in ((0.1, False), (0.1, True), (0.02, True)):
         words = f"recording every {every:g} s{' with contacts' if contacts else ''}"
         yield Pair(words, replace(jam, record=Record(every, contacts)), jam, "over no recording")
+    stuck = ROOMS["parisi_room"](**FROZEN)
+    waiting = replace(stuck, stopping=replace(stuck.stopping, at_rest=False))
+    yield Pair(
+        "the wait of a jam that is at rest for good", waiting, stuck, "a whole run, over its early end", whole=True
+    )
+
+
+def on_a_lattice() -> Given:
+    """Persons at rest out of each other's touch, who want to go nowhere."""
+    places = np.arange(APART, 15.0 - APART / 2, APART)
+    x, y = (axis.ravel() for axis in np.meshgrid(places, places))
+    return Crowd.given(x, y, 0.0, 0.0, 0.0, radius=0.3, mass=70.0, v_d=0.0)
 
 
 def reach(scenario: Scenario) -> float:
