@@ -7,6 +7,7 @@ import sys
 from collections.abc import Sequence
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 import click
 import xarray as xr
@@ -14,6 +15,7 @@ import xarray as xr
 from engine import FINGERPRINT, OUTCOMES, BadInput
 from engine.errors import require
 from sweep import runner
+from sweep.backends import BACKENDS, DASK, LOKY
 from sweep.durable import require_writable
 from sweep.errors import DamagedFile, SweepStopped
 from sweep.gather import gather as gathered
@@ -86,7 +88,13 @@ cli.add_command(run)
 @click.argument("file", type=click.Path(path_type=Path))
 @jobs_option
 @dry_option
-def sweep(file: Path, jobs: int, dry_run: bool) -> None:
+@click.option("--backend", default=None, help=f"One of {', '.join(BACKENDS)}.  [default: {LOKY}]")
+@click.option("--scheduler", metavar="ADDRESS", help="Scheduler of a dask cluster that sees the store.")
+@click.option("--timeout", type=float, metavar="SECONDS", help="End a run that takes longer; the others go on.")
+@click.option("--memory-limit", metavar="SIZE", help='End a worker that takes more, such as "2 GB".')
+@click.option("--fail-fast", is_flag=True, help="Begin no further run after one that failed.")
+@click.option("--retry", is_flag=True, help="Try again what is set aside: ended its workers, or ran out of time.")
+def sweep(file: Path, jobs: int, dry_run: bool, backend: str | None, **manner: Any) -> None:
     """Run what is missing of the grid that FILE (TOML) describes, and gather it.
 
     \b
@@ -98,13 +106,15 @@ def sweep(file: Path, jobs: int, dry_run: bool) -> None:
     [constants]
     N = 200
 
-    Exit code 1 if a run failed; the others are done nevertheless.
+    Exit code 1 if a run failed; the others are done nevertheless. Ctrl-C lets the runs under way finish, a second one
+    ends them; both give exit code 130, and the same command resumes.
     """  # noqa: D301  click reads \b as a character
     grid, path = read_gridfile(file)
     if dry_run:
         click.echo(str(runner.plan_of(grid, Store(path))))
         return
-    _finish(runner.sweep(grid, path, jobs), Store(path).dataset)
+    named = backend or (DASK if manner["scheduler"] else LOKY)
+    _finish(runner.sweep(grid, path, jobs, backend=named, **manner), Store(path).dataset)
 
 
 def _finish(ds: xr.Dataset, path: Path) -> None:

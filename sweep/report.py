@@ -1,5 +1,6 @@
 """What a sweep says while it runs, on stderr."""
 
+import math
 import sys
 import threading
 import time
@@ -7,14 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from rich.console import Console
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
 SILENCE = 10.0  # s between lines where no bar can be drawn
 
@@ -37,36 +31,27 @@ def late_word(after: float, line: str, shown: bool = True) -> Iterator[None]:
 
 
 @contextmanager
-def progress(total: int, shown: bool = True) -> Iterator[Callable[[], None]]:
+def progress(total: int, shown: bool = True) -> Iterator[Callable[[float], None]]:
     """Show how many of `total` runs are over: a bar on a terminal, elsewhere a line now and then.
 
     Yields
     ------
-    A function to call once for each run that is over.
+    A function to call for each run that is over, with the time that the others will take, s, or nan.
     """
     console = Console(stderr=True)
     if not shown:
-        yield lambda: None
+        yield lambda left: None
     elif console.is_terminal or console.is_jupyter:
         with _bar(console) as bar:
-            task = bar.add_task("runs", total=total)
-            yield lambda: bar.advance(task)
+            task = bar.add_task("runs", total=total, left="")
+            yield lambda left: bar.update(task, advance=1, left=_words(left))
     else:
         yield _Lines(total).advance
 
 
 def _bar(console: Console) -> Progress:
-    left = TextColumn("left")
-    return Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        TextColumn("·"),
-        TimeRemainingColumn(),
-        left,
-        console=console,
-    )
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    return Progress(*columns, TextColumn("{task.fields[left]}"), console=console)
 
 
 class _Lines:
@@ -74,15 +59,19 @@ class _Lines:
 
     def __init__(self, total: int) -> None:
         self.total, self.over = total, 0
-        self.begin = self.said = time.monotonic()
+        self.said = time.monotonic()
 
-    def advance(self) -> None:
+    def advance(self, left: float) -> None:
         self.over += 1
         now = time.monotonic()
         if now - self.said >= SILENCE or self.over == self.total:
-            left = (now - self.begin) / self.over * (self.total - self.over)
-            tell(f"{self.over} of {self.total} runs over" + (f", about {_spoken(left)} left" if left else ""))
+            tell(f"{self.over} of {self.total} runs over" + (f", {_words(left)}" if left > 0.0 else ""))
             self.said = now
+
+
+def _words(left: float) -> str:
+    """What to say of the time left; nothing if it is not known."""
+    return "" if math.isnan(left) else f"about {_spoken(left)} left"
 
 
 def _spoken(seconds: float) -> str:

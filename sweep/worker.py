@@ -1,11 +1,11 @@
 """What a worker does: one run, from its scenario to its file."""
 
-import signal
 import time
 import traceback
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 
-from engine import Scenario, simulate
+from engine import Record, Scenario, simulate
 from sweep.schema import run_key
 from sweep.store import Store
 
@@ -15,13 +15,12 @@ class Done:
     """A run that was kept."""
 
     key: str
-    outcome: str
     duration: float  # s
 
 
 @dataclass(frozen=True)
 class Failed:
-    """A run that raised an error."""
+    """A run that raised an error, or was ended."""
 
     key: str
     error: str  # one line
@@ -57,14 +56,25 @@ def work(scenario: Scenario, store: str, key: str) -> Result:
     try:
         return _kept(scenario, Store(store), key)
     except Exception as error:
-        line = " ".join(f"{type(error).__name__}: {error}".split())
-        return Failed(key, line, traceback.format_exc())
+        return failed(key, error)
 
 
-def work_apart(scenario: Scenario, store: str, key: str) -> Result:
-    """As `work`, in a process of its own, where Ctrl-C is the parent's to handle."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    return work(scenario, store, key)
+def failed(key: str, error: BaseException) -> Failed:
+    """An exception as data."""
+    line = " ".join(f"{type(error).__name__}: {error}".split())
+    return Failed(key, line, "".join(traceback.format_exception(error)))
+
+
+def kind_of(scenario: Scenario) -> tuple[object, ...]:
+    """What decides which compiled code a scenario needs."""
+    return (*map(type, scenario.model), scenario.numerics.integrator)
+
+
+def prepare(scenario: Scenario) -> None:
+    """Have the code that a scenario needs compiled, or loaded from numba's cache on disk: a run of one step."""
+    short = replace(scenario.stopping, time_limit=scenario.numerics.dt)
+    with suppress(Exception):  # the run itself tells
+        simulate(replace(scenario, stopping=short, record=Record()))
 
 
 def _kept(scenario: Scenario, store: Store, key: str) -> Done:
@@ -72,4 +82,4 @@ def _kept(scenario: Scenario, store: Store, key: str) -> Done:
     run = simulate(scenario)
     duration = time.perf_counter() - begin
     store.keep(run, duration)
-    return Done(key, run.outcome, duration)
+    return Done(key, duration)

@@ -1,0 +1,59 @@
+"""What a sweep finds done and to do, and in which order it goes about it."""
+
+from typing import NamedTuple
+
+from engine import Scenario
+from sweep.estimate import Durations
+from sweep.grid import Grid, Point
+from sweep.limits import Limits
+from sweep.notes import held_back
+from sweep.schema import run_key
+from sweep.store import Store
+
+
+class Task(NamedTuple):
+    """One run that a grid asks for."""
+
+    key: str
+    point: Point
+    scenario: Scenario
+
+
+class Plan(NamedTuple):
+    """The distinct runs of a grid, and those of them that the store lacks."""
+
+    tasks: list[Task]
+    missing: list[Task]
+
+    def __str__(self) -> str:
+        """How many runs there are, are done, and are to do."""
+        total, left = len(self.tasks), len(self.missing)
+        words = f"{total} run{'s' * (total != 1)}: {total - left} done, {left} to do"
+        return words if left else f"{words}; nothing to run"
+
+
+def plan_of(grid: Grid, store: Store) -> Plan:
+    """What a sweep would find done and to do."""
+    finished = store.finished()
+    points = ((point, grid.scenario(point)) for point in grid.points())
+    tasks = {key: Task(key, point, scenario) for point, scenario in points for key in [run_key(scenario)]}
+    return Plan(list(tasks.values()), [task for key, task in tasks.items() if key not in finished])
+
+
+def not_held_back(tasks: list[Task], store: Store, limits: Limits) -> list[Task]:
+    """The tasks that a sweep takes up without being asked for them; see `sweep.notes.held_back`."""
+    return [task for task in tasks if not held_back(store, task.key, limits)]
+
+
+def durations_of(plan: Plan, grid: Grid, store: Store) -> Durations:
+    """How long the runs of a plan took that are done."""
+    finished, durations = store.finished(), Durations(grid)
+    for task in plan.tasks:
+        if task.key in finished:
+            durations.note(task.point, finished[task.key].duration)
+    return durations
+
+
+def longest_first(tasks: list[Task], durations: Durations) -> list[Task]:
+    """The order in which to begin, so that no long run is left for the end."""
+    return [tasks[k] for k in durations.longest_first(task.point for task in tasks)]
