@@ -1,0 +1,1 @@
+"""What a sweep must live through: kills, lost machines, many runs."""
