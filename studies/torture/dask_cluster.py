@@ -38,7 +38,8 @@ def main(quick: bool) -> list[str]:
         problems += [
             f"{path.name} differs between dask and serial"
             for path in sorted(alone.runs.glob("*.nc"))
-            if not (together.runs / path.name).is_file() or (together.runs / path.name).read_bytes() != path.read_bytes()
+            if not (together.runs / path.name).is_file()
+            or (together.runs / path.name).read_bytes() != path.read_bytes()
         ]
     print(f"dask: {len(grid)} runs on 2 workers, {killer.killed} killed, {len(problems)} problems", flush=True)
     return problems

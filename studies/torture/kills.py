@@ -10,7 +10,6 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -60,7 +59,7 @@ class _Disturbed:
         self._toml.write_text(f"{head}{axis}[constants]\n{constants}\n", "utf-8")
 
     def kill_workers(self, most: int) -> int:
-        """Kill workers of one sweep, until it ends or so many are dead; how many were killed. It is killed then, too."""
+        """Kill workers of one sweep, until it ends or so many are dead, and then it; how many were killed."""
         process, killed = self._start(), 0
         while killed < most and self._waited(process):
             workers = _workers(process.pid)

@@ -1,12 +1,6 @@
 """What holds for any number of workers, and when they fail or die."""
 
 import os
-import signal
-import subprocess
-import sys
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import numpy as np
@@ -19,7 +13,6 @@ from sweep.schema import run_key
 from sweep.worker import Done, Failed, Outdated, work
 from tests.sweep.tiny import TINY, run_files
 
-ROOT = Path(rooms.__file__).parents[1]
 CROWDED = {"size": 2.2, "time_limit": 0.5}  # ten persons cover 59 % of it: not to be placed at random
 
 
@@ -82,73 +75,3 @@ def test_an_engine_edited_meanwhile_stops_the_sweep(grid: Grid, store: Path, mon
     assert isinstance(work(rooms.lin_room(**TINY), str(store), "asked for"), Outdated)
     with pytest.raises(SweepStopped, match="engine's sources were edited meanwhile: 0 of 6 runs are kept"):
         sweep(grid, store, jobs=1)
-
-
-@contextmanager
-def endless_sweep(folder: Path) -> Iterator[subprocess.Popen]:
-    """A sweep of four tiny runs and of four that never end, in a process group of its own."""
-    toml = folder / "grid.toml"
-    toml.write_text(
-        f'room = "lin_room"\nstore = "{folder / "results"}"\n'
-        "[axes]\ntime_limit = [0.1, 1e6]\nseed = [0, 1, 2, 3]\n"
-        "[constants]\nN = 5\nsize = 4\nv_d = 0\npatience = 1e6\n"
-    )
-    process = subprocess.Popen(
-        [sys.executable, "-m", "sweep.cli", "sweep", toml, "--jobs", "2"],
-        stderr=subprocess.PIPE,
-        text=True,
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
-        start_new_session=True,
-    )
-    try:
-        yield process
-    finally:
-        with suppress(ProcessLookupError):
-            os.killpg(process.pid, signal.SIGKILL)
-        process.communicate()
-
-
-def wait_for_runs(store: Path, number: int) -> None:
-    end = time.monotonic() + 60.0
-    while time.monotonic() < end:
-        if len(Store(store).finished()) >= number:
-            return
-        time.sleep(0.05)
-    raise AssertionError(f"fewer than {number} runs after a minute")
-
-
-def workers_of(parent: int) -> list[int]:
-    """Process ids of a sweep's loky workers."""
-    found = []
-    for folder in Path("/proc").glob("[0-9]*"):
-        try:
-            ppid = int((folder / "stat").read_text().rpartition(")")[2].split()[1])
-            command = (folder / "cmdline").read_bytes()
-        except OSError:
-            continue
-        if ppid == parent and b"popen_loky" in command:
-            found.append(int(folder.name))
-    return found
-
-
-def test_a_killed_worker_costs_no_finished_run(tmp_path: Path) -> None:
-    with endless_sweep(tmp_path) as process:
-        wait_for_runs(tmp_path / "results", 4)
-        os.kill(workers_of(process.pid)[0], signal.SIGKILL)
-        said = process.communicate(timeout=60)[1]
-    assert process.returncode == 1
-    assert "Traceback" not in said
-    line = next(line for line in said.splitlines() if "a worker process was killed" in line)  # joblib may say more
-    assert "4 of 8 runs are kept, run again to resume" in line
-    assert len(Store(tmp_path / "results").finished()) == 4
-
-
-def test_ctrl_c_keeps_finished_runs_and_says_so(tmp_path: Path) -> None:
-    with endless_sweep(tmp_path) as process:
-        wait_for_runs(tmp_path / "results", 4)
-        os.killpg(process.pid, signal.SIGINT)
-        said = process.communicate(timeout=60)[1]
-    assert process.returncode == 130
-    assert "Traceback" not in said
-    assert "interrupted: 4 of 8 runs are kept, run again to resume" in said.splitlines()
-    assert len(Store(tmp_path / "results").finished()) == 4
