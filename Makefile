@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
 
-.PHONY: help setup bench stress study-accuracy test lint constraints clean
+.PHONY: help setup bench stress torture study-accuracy test lint constraints clean
 .DEFAULT_GOAL := help
 
 help:  ## this list
@@ -40,6 +40,9 @@ bench: $(READY)  ## this engine beside its peers: make bench [QUICK=1]; $(BIN)/p
 
 stress: $(READY)  ## the engine at its edges and 10,000 random scenes: make stress [QUICK=1] [JOBS=2]
 	@$(BIN)/python -m studies.stress --jobs $(JOBS) $(if $(QUICK),--quick) $(if $(DOCS),--docs)
+
+torture: $(READY)  ## sweeps that are killed, damaged, spread and large: make torture [QUICK=1]
+	@$(BIN)/python -m studies.torture $(if $(QUICK),--quick)
 
 test: $(READY)  ## all tests
 	@$(BIN)/python -m pytest -n $(JOBS) --dist loadfile

@@ -52,7 +52,7 @@ class Dask:
 
     def __enter__(self) -> Self:
         with ExitStack() as begun:
-            address = self._scheduler or begun.enter_context(_own_cluster(self._distributed, self._jobs))
+            address = self._scheduler or begun.enter_context(own_cluster(self._jobs))
             self._client = begun.enter_context(_connected(self._distributed, address))
             self._executor = self._client.get_executor(pure=False)
             self._token = begun.enter_context(_Token(self._store)).name
@@ -131,18 +131,31 @@ def _distributed() -> Any:
         raise BadInput("backend 'dask' is not installed: pip install 'jamsweep[dask]'") from None
 
 
-def _own_cluster(distributed: Any, jobs: int) -> Any:
-    settings = {"distributed.scheduler.allowed-failures": LIVES - 1, "distributed.worker.daemon": False}
+def own_cluster(jobs: int) -> Any:
+    """A dask cluster of worker processes of this machine, for a with statement.
+
+    Raises
+    ------
+    BadInput
+        If dask is not installed, or the workers cannot be started.
+    """
+    distributed = _distributed()
+    settings = {"distributed.scheduler.allowed-failures": LIVES - 1}
     with ctrl_c_left_alone(), importlib.import_module("dask").config.set(settings):
-        return distributed.LocalCluster(
-            n_workers=jobs,
-            threads_per_worker=1,
-            processes=True,
-            host="127.0.0.1",
-            dashboard_address=None,
-            env=PINNED,
-            silence_logs="CRITICAL",
-        )
+        try:
+            return distributed.LocalCluster(
+                n_workers=jobs,
+                threads_per_worker=1,
+                processes=True,
+                host="127.0.0.1",
+                dashboard_address="127.0.0.1:0",
+                env=PINNED,
+                silence_logs="CRITICAL",
+            )
+        except RuntimeError as error:
+            why = str(error).partition("\n")[0]
+            remedy = 'in a script, call sweep below `if __name__ == "__main__":`'
+            raise BadInput(f"dask workers cannot be started ({why}): {remedy}") from None
 
 
 def _connected(distributed: Any, address: Any) -> Any:

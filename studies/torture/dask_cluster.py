@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import xarray as xr
-from distributed import Client, LocalCluster
+from distributed import Client
 
 from sweep import Grid, Store, sweep
-from sweep.attached import ctrl_c_left_alone
+from sweep.cluster import own_cluster
 
 CONSTANTS = {"N": 8, "size": 4.0, "accuracy": "0.1mm", "time_limit": 8.0}  # tenths of a second a run
 
@@ -24,9 +24,7 @@ def main(quick: bool) -> list[str]:
     with tempfile.TemporaryDirectory() as folder:
         alone, together = Store(Path(folder) / "serial"), Store(Path(folder) / "dask")
         one = sweep(grid, alone, progress=False, backend="serial")
-        with ctrl_c_left_alone():
-            cluster = LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs="CRITICAL")
-        with cluster:
+        with own_cluster(2) as cluster:
             killer = _Killer(cluster, together, len(grid) // 4)
             killer.start()
             two = sweep(grid, together, progress=False, scheduler=cluster.scheduler_address)

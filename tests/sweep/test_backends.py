@@ -14,21 +14,15 @@ import xarray as xr
 
 from engine import BadInput
 from sweep import Grid, Store, cluster, sweep
-from sweep.attached import ctrl_c_left_alone
 from tests.sweep.tiny import TINY, run_files
 
 
 @pytest.fixture(scope="module")
 def two_machines() -> Iterator[Any]:
     """A dask cluster of two worker processes."""
-    distributed = pytest.importorskip("distributed")
-    with (
-        ctrl_c_left_alone(),
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs="CRITICAL"
-        ) as cluster,
-    ):
-        yield cluster
+    pytest.importorskip("distributed")
+    with cluster.own_cluster(2) as two:
+        yield two
 
 
 def test_serial_loky_dask_shuffled_and_resumed_sweeps_are_equal_byte_for_byte(
@@ -56,23 +50,18 @@ def test_serial_loky_dask_shuffled_and_resumed_sweeps_are_equal_byte_for_byte(
 
 
 def test_a_killed_dask_worker_costs_no_run(tmp_path: Path) -> None:
-    distributed = pytest.importorskip("distributed")
+    pytest.importorskip("distributed")
     grid, store = (
         Grid("lin_room", seed=range(8), N=5, size=4.0, accuracy="0.1mm", time_limit=8.0),
         Store(tmp_path / "d"),
     )
 
-    def kill_one(cluster: Any) -> None:
+    def kill_one(two: Any) -> None:
         while not store.finished():
             time.sleep(0.05)
-        os.kill(next(iter(cluster.workers.values())).pid, signal.SIGKILL)
+        os.kill(next(iter(two.workers.values())).pid, signal.SIGKILL)
 
-    with (
-        ctrl_c_left_alone(),
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs="CRITICAL"
-        ) as two,
-    ):
+    with cluster.own_cluster(2) as two:
         killer = threading.Thread(target=kill_one, args=(two,))
         killer.start()
         ds = sweep(grid, store, scheduler=two.scheduler_address)
