@@ -9,6 +9,7 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from multiprocessing import resource_tracker
 
 PINNED = dict.fromkeys(
     (
@@ -63,6 +64,7 @@ def _watch(parent: int) -> None:
 @contextmanager
 def ctrl_c_left_alone() -> Iterator[None]:
     """Have processes that are started here ignore Ctrl-C from their first instruction: masks are inherited."""
+    resource_tracker.ensure_running()  # which would lift the mask if it were started with the first worker
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield

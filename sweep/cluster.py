@@ -5,12 +5,14 @@ slot's process and not the dask worker. Results stay where workers write them: o
 """
 
 import importlib
+import logging
 import os
 import secrets
 import socket
 import time
+from collections.abc import Iterator
 from concurrent.futures import Future
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any, Self
 
@@ -52,6 +54,7 @@ class Dask:
 
     def __enter__(self) -> Self:
         with ExitStack() as begun:
+            begun.enter_context(_without_log())
             address = self._scheduler or begun.enter_context(own_cluster(self._jobs))
             self._client = begun.enter_context(_connected(self._distributed, address))
             self._executor = self._client.get_executor(pure=False)
@@ -67,7 +70,11 @@ class Dask:
     def places(self) -> int:
         """The threads of all workers that there are now."""
         if time.monotonic() - self._looked > LOOK:
-            self._places, self._looked = max(sum(self._client.nthreads().values()), 1), time.monotonic()
+            try:
+                threads = self._client.nthreads()
+            except (OSError, RuntimeError):  # of a connection, of a client that is closed
+                raise SweepStopped(f"the dask scheduler '{self._client.scheduler.address}' is lost") from None
+            self._places, self._looked = max(sum(threads.values()), 1), time.monotonic()
         return self._places
 
     def begin(self, job: Job) -> "Future[Result]":
@@ -81,7 +88,7 @@ class Dask:
     def _hand_on(self, over: "Future[Result]", future: "Future[Result]", job: Job) -> None:
         error = None if over.cancelled() else over.exception()
         if over.cancelled():
-            future.set_exception(SweepStopped("the dask scheduler gave up the runs"))
+            future.set_exception(SweepStopped("the dask scheduler is lost, or gave up the runs"))
         elif error is None:
             future.set_result(over.result())
         elif isinstance(error, self._distributed.KilledWorker):
@@ -118,6 +125,18 @@ class _Token:
 
     def __exit__(self, *error: Any) -> None:
         self._path.unlink(missing_ok=True)
+
+
+@contextmanager
+def _without_log() -> Iterator[None]:
+    """Keep what dask's client logs of a lost scheduler, with tracebacks, off the screen: a line says it."""
+    log = logging.getLogger("distributed.client")
+    level = log.level
+    log.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        log.setLevel(level)
 
 
 def _sees(store: str, token: str) -> tuple[str, bool]:

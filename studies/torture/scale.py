@@ -23,6 +23,7 @@ from sweep.execution import Execution, Manner
 from sweep.limits import Limits
 from sweep.plan import durations_of, plan_of
 
+FOLDER = Path("results/torture")  # on a disk: /tmp may be memory
 LONGEST = 0.020  # s, the cost of a run with durable write
 GROWTH = 5.0  # MB of the parent between its 1000th and its last run
 FEW = 1000
@@ -60,7 +61,8 @@ def main(quick: bool) -> list[str]:
 
 def _apart(backend: str, runs: int, few: int) -> Measured:
     """Measure in a process of its own."""
-    with tempfile.TemporaryDirectory(dir=os.getcwd()) as folder:  # on a disk: /tmp may be memory
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=FOLDER) as folder:
         command = [sys.executable, "-m", "studies.torture.scale", folder, backend, str(runs), str(few)]
         done = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True)
     return Measured(*json.loads(done.stdout))

@@ -81,6 +81,19 @@ def test_the_first_ctrl_c_lets_the_runs_under_way_finish(tmp_path: Path) -> None
     assert "Traceback" not in said
 
 
+def test_ctrl_c_while_workers_start_disturbs_none_of_them(tmp_path: Path) -> None:
+    with command(tmp_path, SECONDS) as process:
+        eventually("two workers", lambda: len(workers(process)) == 2)
+        for _ in range(5):
+            time.sleep(0.2)
+            os.kill(workers(process)[0].pid, signal.SIGINT)
+            os.kill(workers(process)[-1].pid, signal.SIGINT)
+        said = process.communicate(timeout=120)[1]
+    assert process.returncode == 0
+    assert "Traceback" not in said
+    assert kept(tmp_path) == 5
+
+
 def test_the_second_ctrl_c_stops_at_once_and_keeps_finished_runs(tmp_path: Path) -> None:
     with command(tmp_path, ENDLESS) as process:
         eventually("two runs kept", lambda: kept(tmp_path) == 2)

@@ -82,6 +82,11 @@ def test_a_memory_limit_that_no_worker_keeps_is_refused(own: Slot, job: Job) -> 
         own.run(job._replace(limits=Limits(memory=5e7)))
 
 
+def test_a_worker_that_joins_later_and_does_not_see_the_store_says_so(own: Slot, job: Job) -> None:
+    with pytest.raises(BadInput, match=r"store .* is not seen by the worker on \S+: put it on a file system that all"):
+        own.run(job._replace(token="runs/.seen.elsewhere.1.abcd.tmp"))
+
+
 def test_a_stopped_slot_starts_no_worker(own: Slot, job: Job) -> None:
     own.stop()
     with pytest.raises(SweepStopped):
