@@ -5,7 +5,6 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import closing
 from typing import NamedTuple
 
-from engine import Scenario
 from sweep.backends import DASK, LOKY, SERIAL, Backend, Loky, Serial, results
 from sweep.cluster import Dask
 from sweep.errors import SweepStopped
@@ -19,7 +18,7 @@ from sweep.report import late_word, tell
 from sweep.report import progress as progress_of
 from sweep.slot import Job
 from sweep.store import Store
-from sweep.worker import Done, Outdated, Result, kind_of, prepare
+from sweep.worker import Done, Outdated, Result, prepare
 
 PATIENCE = 2.0  # s without a word
 
@@ -59,7 +58,7 @@ class Execution:
             See `sweep.sweep`.
         """
         try:
-            _compile((task.scenario for task in self._tasks), self._manner.shown)
+            _compile(self._tasks, self._manner.shown)
             with two_stages(self._manner.backend != SERIAL) as stopping:
                 self._run_all(stopping)
                 if stopping():
@@ -127,9 +126,9 @@ class Execution:
         return f"{sum(task.key in finished for task in self._tasks)} of {len(self._tasks)} runs are kept"
 
 
-def _compile(scenarios: Iterable[Scenario], shown: bool) -> None:
+def _compile(tasks: Iterable[Task], shown: bool) -> None:
     """Compile each model once: workers then find it in numba's cache on disk."""
-    kinds = {kind_of(scenario): scenario for scenario in scenarios}
+    kinds = {task.kind: task for task in tasks}
     with late_word(PATIENCE, "compiling the model, once for each state of the engine ...", shown):
-        for scenario in kinds.values():
-            prepare(scenario)
+        for task in kinds.values():
+            prepare(task.scenario)

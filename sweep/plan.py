@@ -9,6 +9,7 @@ from sweep.limits import Limits
 from sweep.notes import held_back
 from sweep.schema import run_key
 from sweep.store import Store
+from sweep.worker import Kind, kind_of
 
 
 class Task(NamedTuple):
@@ -16,7 +17,13 @@ class Task(NamedTuple):
 
     key: str
     point: Point
-    scenario: Scenario
+    grid: Grid
+    kind: Kind  # of compiled code that it needs
+
+    @property
+    def scenario(self) -> Scenario:
+        """Made anew each time: a plan of a million runs does not hold a million scenarios."""
+        return self.grid.scenario(self.point)
 
 
 class Plan(NamedTuple):
@@ -34,9 +41,12 @@ class Plan(NamedTuple):
 
 def plan_of(grid: Grid, store: Store) -> Plan:
     """What a sweep would find done and to do."""
-    finished = store.finished()
-    points = ((point, grid.scenario(point)) for point in grid.points())
-    tasks = {key: Task(key, point, scenario) for point, scenario in points for key in [run_key(scenario)]}
+    finished, tasks = store.finished(), dict[str, Task]()
+    kinds: dict[Kind, Kind] = {}  # one object for each, which tasks share
+    for point in grid.points():
+        scenario = grid.scenario(point)
+        key, kind = run_key(scenario), kind_of(scenario)
+        tasks[key] = Task(key, point, grid, kinds.setdefault(kind, kind))
     return Plan(list(tasks.values()), [task for key, task in tasks.items() if key not in finished])
 
 

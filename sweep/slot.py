@@ -27,7 +27,7 @@ from sweep.attached import ASK, PINNED, attach, ctrl_c_left_alone
 from sweep.errors import SweepStopped
 from sweep.limits import Limits, megabytes
 from sweep.store import Store
-from sweep.worker import Done, Failed, Result, failed, kind_of, prepare, work
+from sweep.worker import Done, Failed, Kind, Result, failed, kind_of, prepare, work
 
 LIVES = 2  # workers that one run may cost
 STARTS = 5  # attempts to start a worker, in a row
@@ -63,7 +63,7 @@ class Slot:
         self._executor: ProcessPoolExecutor | None = None
         self._stacks: IO[bytes] = io.BytesIO()
         self._path = ""
-        self._compiled: set[tuple[object, ...]] = set()
+        self._compiled: set[Kind] = set()
         self._stopped = False
 
     def run(self, job: Job) -> Result:

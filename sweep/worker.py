@@ -35,6 +35,7 @@ class Outdated:
 
 
 Result = Done | Failed | Outdated
+Kind = tuple[object, ...]
 
 
 def work(scenario: Scenario, store: str, key: str) -> Result:
@@ -65,7 +66,7 @@ def failed(key: str, error: BaseException) -> Failed:
     return Failed(key, line, "".join(traceback.format_exception(error)))
 
 
-def kind_of(scenario: Scenario) -> tuple[object, ...]:
+def kind_of(scenario: Scenario) -> Kind:
     """What decides which compiled code a scenario needs."""
     return (*map(type, scenario.model), scenario.numerics.integrator)
 
