@@ -12,16 +12,19 @@ from sweep.grid import Grid
 from sweep.runfile import read_run, to_dataset, write_run
 from sweep.runner import sweep
 from sweep.store import Store
+from sweep.until import Until, sweep_until
 
 __all__ = [
     "DamagedFile",
     "Grid",
     "Store",
     "SweepStopped",
+    "Until",
     "gather",
     "open_results",
     "read_run",
     "sweep",
+    "sweep_until",
     "to_dataset",
     "write_run",
 ]

@@ -20,10 +20,11 @@ from sweep.durable import require_writable
 from sweep.errors import DamagedFile, SweepStopped
 from sweep.gather import gather as gathered
 from sweep.grid import Grid
-from sweep.gridfile import read_gridfile
+from sweep.gridfile import read_gridfile, read_until
 from sweep.report import tell
 from sweep.run_command import run
 from sweep.store import Store
+from sweep.until import account, sweep_until
 
 FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130  # exit codes
 SETTINGS = {
@@ -105,6 +106,10 @@ def sweep(file: Path, jobs: int, dry_run: bool, backend: str | None, **manner: A
     seed = { first = 0, last = 9, step = 1 }
     [constants]
     N = 200
+    [until]                      # not needed: as many of the seeds in each cell as its interval needs
+    clearance_time = 0.05        # half-width of the mean over itself, in the smooth state
+    blocked_share = 0.1          # half-width
+    budget = 2000                # runs
 
     Exit code 1 if a run failed; the others are done nevertheless. Ctrl-C lets the runs under way finish, a second one
     ends them; both give exit code 130, and the same command resumes.
@@ -113,12 +118,20 @@ def sweep(file: Path, jobs: int, dry_run: bool, backend: str | None, **manner: A
     if dry_run:
         click.echo(str(runner.plan_of(grid, Store(path))))
         return
-    named = backend or (DASK if manner["scheduler"] else LOKY)
-    _finish(runner.sweep(grid, path, jobs, backend=named, **manner), Store(path).dataset)
+    manner["backend"] = backend or (DASK if manner["scheduler"] else LOKY)
+    until = read_until(file)
+    if until is None:
+        _finish(runner.sweep(grid, path, jobs, **manner), Store(path).dataset)
+        return
+    ds = sweep_until(grid, path, until, jobs, **manner)
+    click.echo(account(ds))
+    _finish(ds, Store(path).dataset, meant=int((ds.seeds_given.max() - ds.seeds_given).sum()))
 
 
-def _finish(ds: xr.Dataset, path: Path) -> None:
+def _finish(ds: xr.Dataset, path: Path, meant: int = 0) -> None:
+    """Say how runs ended and where the dataset is; `meant`: runs that are missing because they were not asked for."""
     number = {word: int((ds.outcome == code).sum()) for code, word in enumerate(OUTCOMES)}
+    number["missing"] -= meant
     click.echo(", ".join(f"{count} {word}" for word, count in number.items() if count))
     click.echo(str(path))
     if number["missing"]:

@@ -9,6 +9,10 @@ seed = { first = 0, last = 9, step = 1 }
 
 [constants]
 N = 200
+
+[until]  # if given: seeds where they are needed, out of those of the axis, see `sweep.until`
+clearance_time = 0.05
+blocked_share = 0.1
 """
 
 import math
@@ -22,7 +26,7 @@ from engine import BadInput
 from engine.errors import require
 from sweep.grid import Grid
 
-PARTS = ("room", "store", "axes", "constants")
+PARTS = ("room", "store", "axes", "constants", "until")
 SPAN = ("first", "last", "step")
 MOST_VALUES = 100_000
 
@@ -52,6 +56,18 @@ def read_gridfile(path: Path) -> tuple[Grid, str]:
     for name in axes:
         require(name not in constants, "keyword", repr(name), "is both axis and constant", "remove one of them")
     return Grid(parts["room"], **axes, **constants), parts["store"]
+
+
+def read_until(path: Path) -> dict[str, Any] | None:
+    """The table [until] of a file, as it stands there; None if it has none.
+
+    Raises
+    ------
+    BadInput
+        If the file cannot be read or is no TOML, or `until` is no table.
+    """
+    parts = _parsed(path)
+    return _table(parts, "until") if "until" in parts else None
 
 
 def _parsed(path: Path) -> dict[str, Any]:
