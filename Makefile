@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
 
-.PHONY: help setup bench stress torture study-accuracy test lint constraints clean
+.PHONY: help setup bench stress torture study-accuracy study-readings test lint constraints clean
 .DEFAULT_GOAL := help
 
 help:  ## this list
@@ -34,6 +34,9 @@ study-%: $(READY)  ## reproduce a figure: make study-fig10, study-parisi, study-
 
 study-accuracy: $(READY)  ## error, bias and time of the numerics: make study-accuracy [QUICK=1] [JOBS=2] [DOCS=1] [MORE=4]
 	@$(BIN)/python -m studies.accuracy --jobs $(JOBS) $(if $(QUICK),--quick) $(if $(DOCS),--docs) $(if $(MORE),--more $(MORE))
+
+study-readings: $(READY)  ## readings of Lin's paper against its numbers: make study-readings [QUICK=1] [JOBS=2] [DOCS=1]
+	@$(BIN)/python -m studies.readings --jobs $(JOBS) $(if $(QUICK),--quick) $(if $(DOCS),--docs)
 
 bench: $(READY)  ## this engine beside its peers: make bench [QUICK=1]; $(BIN)/pip install -e '.[bench]' brings them
 	@$(BIN)/python -m studies.bench $(if $(QUICK),--quick) $(if $(DOCS),--docs)

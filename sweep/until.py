@@ -240,9 +240,9 @@ def _with(values: tuple[Scalar, ...], value: Scalar) -> tuple[Scalar, ...]:
     """The values of an axis and one more, in ascending order if they were."""
     if value in values:
         return values
-    numbers = all(isinstance(v, int | float) for v in (*values, value))
-    ascending = numbers and list(values) == sorted(values)  # type: ignore[type-var]  numbers, as the line before says
-    return tuple(sorted((*values, value))) if ascending else (*values, value)  # type: ignore[type-var]  the same
+    numbers = [v for v in (*values, value) if isinstance(v, int | float)]
+    ascending = len(numbers) > len(values) and numbers[:-1] == sorted(numbers[:-1])
+    return tuple(sorted(numbers)) if ascending else (*values, value)
 
 
 def _check(grid: Grid, until: Until) -> None:

@@ -1,1 +1,1 @@
-"""Which reading of Lin, Ma & Lo (2016) the published numbers support: one score for all readings, with its uncertainty."""
+"""Which reading of Lin, Ma & Lo (2016) the published numbers support: one score, with its uncertainty."""

@@ -1,6 +1,5 @@
 """The readings that are compared: the engine's eight, and what the paper's text leaves open besides."""
 
-import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, NamedTuple
@@ -11,8 +10,6 @@ from engine.errors import require
 from engine.laws import Absent, Exponential
 from engine.models import Model
 
-DAMPING_RATIO = 0.8  # Table 1's "damping constant", read as a share of critical damping
-MEAN_MASS, MEAN_RADIUS, PRESSED = 70.0, 0.30, 0.01  # kg, m, m: two mean persons, overlap of a crowd at the exit
 DEFAULT = "RK"
 
 
@@ -22,15 +19,6 @@ class Reading(NamedTuple):
     text: str
     keywords: dict[str, Any]
     change: Callable[[Model], Model] | None = None
-
-
-def damping_of_ratio(ratio: float, k_n: float) -> float:
-    """Constant g of Eq. 3, 1/(m s), that damps two mean persons pressed by 1 cm with this share of critical.
-
-    alpha m g = 2 ratio sqrt(m alpha k_n), with m the reduced mass and alpha = sqrt(overlap R), R = r/2.
-    """
-    alpha = math.sqrt(PRESSED * MEAN_RADIUS / 2.0)
-    return 2.0 * ratio * math.sqrt(k_n / (alpha * MEAN_MASS / 2.0))
 
 
 def _no_wall_push(model: Model) -> Model:
@@ -45,7 +33,6 @@ def _wall_held(model: Model) -> Model:
     return model._replace(wall_social=Exponential(300.0, model.social.B))
 
 
-DAMPED = damping_of_ratio(DAMPING_RATIO, rooms.lin_room(N=1).model.normal.k_n)
 READINGS: dict[str, Reading] = {
     "RK": Reading("persons: spring reset on slip; walls: kinetic, tanh", {"reading": "RK"}),
     "RS": Reading("persons: spring reset; walls: kinetic, sign", {"reading": "RS"}),
@@ -59,7 +46,6 @@ READINGS: dict[str, Reading] = {
     "RK-disc": Reading("as RK, inertia of a disc (0.5 m r^2)", {"reading": "RK", "inertia": "disc"}),
     "RK-wall": Reading("as RK, walls do not push socially", {"reading": "RK"}, _no_wall_push),
     "RK-A": Reading("as RK, walls push with A = 300 N whatever A is", {"reading": "RK"}, _wall_held),
-    "RK-damp": Reading("as RK, damping constants are shares of critical", {"reading": "RK", "g_n": DAMPED, "g_t": DAMPED}),
     "RK-dt": Reading("as RK, the paper's step and integrator", {"reading": "RK", "numerics": "paper"}),
     "KK": Reading("both: kinetic, tanh, no springs", {"reading": "RK"}, _kinetic_everywhere),
 }

@@ -96,10 +96,12 @@ def _by_group(of_targets: Floats) -> Floats:
 
 
 def verdicts(found: xr.Dataset) -> dict[str, str]:
-    """For each reading "best", "ruled out" or "not told apart" from the best: by the paired difference of all targets."""
+    """For each reading "best", "ruled out" or "not told apart" from the best, by the paired difference of scores."""
     of_all = found.sel(group="all")
     best = str(of_all.reading.values[int(of_all.score.values.argmin())])
     apart = of_all.sel(other=best)
     worse = apart.difference_low > 0.0
-    words = {str(name): "ruled out" if bool(worse.sel(reading=name)) else "not told apart" for name in found.reading.values}
+    words = {
+        str(name): "ruled out" if bool(worse.sel(reading=name)) else "not told apart" for name in found.reading.values
+    }
     return words | {best: "best"}

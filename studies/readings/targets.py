@@ -199,7 +199,10 @@ def _fig9() -> list[Target]:
 TARGETS: tuple[Target, ...] = (
     *(_clearance(FITTED, "7", time, Cell(200, v_d)) for v_d, time in paper.FIG7_CLEARANCE_TIME.items()),
     _clearance(FITTED, "7", paper.FIG7_PLATEAU_CLEARANCE_TIME, *_many(200, 1.2, 1.4, 1.6)),
-    *(_clearance(FITTED, "4", time, Cell(paper.FIG4_N, paper.FIG4_V_D, A)) for A, time in paper.FIG4_CLEARANCE_TIME.items()),
+    *(
+        _clearance(FITTED, "4", time, Cell(paper.FIG4_N, paper.FIG4_V_D, A))
+        for A, time in paper.FIG4_CLEARANCE_TIME.items()
+    ),
     *(_free("7", cell) for cell in _many(200, 0.6, 1.0, 1.2, 1.4)),
     _blocked("7", Cell(200, paper.FIG7_BLOCKED_FROM)),
     _rotation_same(STILL_1, Cell(100, 1.0)),

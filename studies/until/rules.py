@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -88,7 +89,7 @@ class Boundaries:
         middles: set[float] = set()
         for name in BOUNDARIES:
             low, high = float(column[f"{name}_low"]), float(column[f"{name}_high"])
-            for a, b in zip(v_d, v_d[1:], strict=False):
+            for a, b in pairwise(v_d):
                 if b - a > self.resolution + NEAR and a < high - NEAR and b > low + NEAR:
                     middles.add(round((a + b) / 2.0, DIGITS))
         return sorted(middles)
