@@ -1,5 +1,6 @@
 """Planted cells whose true mean and blocked share are known: how often the intervals hold them when a sweep stops."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -63,18 +64,27 @@ def settled(ds: xr.Dataset, until: Until) -> NDArray[np.int64]:
         given = given + xr.where(wanting, np.minimum(until.batch, supply - given), 0)
 
 
-def coverage(until: Until, copies: int = 400, supply: int = 200, seed: int = 0) -> list[Covered]:
-    """Coverage of the 95 % intervals of stopped cells, for all planted shares and scatters.
+def coverage(
+    until: Until,
+    copies: int = 400,
+    supply: int = 200,
+    seed: int = 0,
+    shares: Sequence[float] = SHARES,
+    scatters: Sequence[float] = SCATTER,
+) -> list[Covered]:
+    """Coverage of the 95 % intervals of stopped cells, for planted blocked shares and scatters of clearance times.
 
     Parameters
     ----------
     until : its `excess` is replaced by one goal at a time, with the half-widths of `HalfWidths`
     copies : planted cells of each kind
     supply : most seeds of a cell
+    seed : of what is planted
+    shares, scatters : what is planted
     """
     rng = np.random.default_rng(seed)
-    return [_of_share(rng, until, copies, supply, share) for share in SHARES] + [
-        _of_mean(rng, until, copies, supply, scatter) for scatter in SCATTER
+    return [_of_share(rng, until, copies, supply, share) for share in shares] + [
+        _of_mean(rng, until, copies, supply, scatter) for scatter in scatters
     ]
 
 

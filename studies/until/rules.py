@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import Any
 
 import numpy as np
@@ -76,13 +76,11 @@ class Boundaries:
     def __call__(self, ds: xr.Dataset) -> list[Point]:
         """Middles of such gaps, column by column, as values of the axes but `seed`."""
         found = measures.states(ds)
-        columns = found.runs.stack(column=[dim for dim in found.runs.dims if dim != "v_d"], create_index=False)
-        names = [dim for dim in found.runs.dims if dim != "v_d"]
-        points: list[Point] = []
-        for k in range(columns.sizes["column"]):
-            where = {name: columns[name].values[k].item() for name in names}
-            points += [where | {"v_d": v_d} for v_d in self._gaps(found.sel(where))]
-        return points
+        names = [str(dim) for dim in found.runs.dims if dim != "v_d"]
+        columns = (
+            dict(zip(names, at, strict=True)) for at in product(*(found[name].values.tolist() for name in names))
+        )
+        return [where | {"v_d": v_d} for where in columns for v_d in self._gaps(found.sel(where))]
 
     def _gaps(self, column: xr.Dataset) -> list[float]:
         v_d = column.v_d.values[column.runs.values > 0]

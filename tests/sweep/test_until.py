@@ -66,7 +66,7 @@ def test_runs_that_were_not_asked_for_are_missing_in_every_variable(store):
 
 
 def test_the_result_does_not_depend_on_what_the_store_held_nor_on_the_number_of_workers(store, tmp_path):
-    until = Until(spread(0.02), least=3, batch=3)
+    until = Until(spread(0.01), least=3, batch=4)
     once = sweep_until(grid(), store, until, jobs=1, progress=False)
     assert 3 < once.seeds_given.max() > once.seeds_given.min()
     full = tmp_path / "full"
@@ -84,16 +84,16 @@ def _plain(ds: xr.Dataset) -> xr.Dataset:
 
 
 def test_an_interrupted_sweep_goes_on_to_the_same_result(store, tmp_path, monkeypatch):
-    until, asked = Until(spread(0.02), least=3, batch=3), []
+    until, asked = Until(spread(0.01), least=3, batch=4), []
 
     def interrupted(ds):
         asked.append(1)
         if len(asked) == 2:
             raise KeyboardInterrupt
-        return spread(0.02)(ds)
+        return spread(0.01)(ds)
 
     with pytest.raises(KeyboardInterrupt):
-        sweep_until(grid(), store, Until(interrupted, least=3, batch=3), jobs=1, progress=False)
+        sweep_until(grid(), store, Until(interrupted, least=3, batch=4), jobs=1, progress=False)
     kept = run_files(store)
     assert Grid.from_json(Store(store).grid.read_text()).axes["v_d"] == V_D  # status and gather still know it
     ds = sweep_until(grid(), store, until, jobs=1, progress=False)
