@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from studies.presentation import figures
 from studies.readings.page import ranked
 from studies.readings.room import DEFAULT
-from studies.readings.score import verdicts
+from studies.readings.score import TOO_FEW, verdicts
 from studies.readings.targets import TARGETS
 
 LINEAR_TO = 10.0  # of the axes of scores, logarithmic beyond
@@ -18,6 +18,7 @@ MARKERS = {
     "best": ("*", figures.GREEN, 8),
     "not told apart": ("o", figures.BLUE, 4),
     "ruled out": ("X", figures.ORANGE, 5),
+    TOO_FEW: ("s", figures.GREY, 4),
 }
 TOP = 100.0  # term at which colours end: ten tolerances
 
@@ -44,6 +45,8 @@ def _differences(axis: Axes, found: xr.Dataset) -> None:
         axis.plot([low, high], [k, k], "-", color=colour, lw=1.2)
         axis.plot([at], [k], marker, color=colour, ms=size)
     for word, (marker, colour, size) in MARKERS.items():
+        if word not in words.values():
+            continue
         axis.plot([], [], marker, color=colour, ms=size, label=word)
     axis.axvline(0.0, color=figures.GREY, lw=0.8, zorder=0)
     axis.set_xscale("symlog", linthresh=LINEAR_TO, linscale=0.8)
@@ -52,8 +55,8 @@ def _differences(axis: Axes, found: xr.Dataset) -> None:
     axis.set_xlim(min(1.5 * low, -3.0), 1.6 * float(apart.difference_high.max()))
     axis.set_yticks(range(len(names)), [f"{name} (default)" if name == DEFAULT else name for name in names])
     axis.invert_yaxis()
-    axis.set_xlabel(f"score less that of {best} (1; 95 %, paired by seed)")
-    axis.legend(loc="lower right", handletextpad=0.2, borderaxespad=0.1)
+    axis.set_xlabel(f"score less that of {best} (1)")
+    axis.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, handletextpad=0.2, columnspacing=0.8)
 
 
 def _terms(figure: Figure, axis: Axes, found: xr.Dataset) -> None:

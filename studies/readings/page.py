@@ -5,7 +5,7 @@ import xarray as xr
 
 from studies.presentation.verdicts import columns, interval
 from studies.readings.room import DEFAULT, READINGS
-from studies.readings.score import CONFIDENCE, verdicts
+from studies.readings.score import CONFIDENCE, LEAST_SEEDS, TOO_FEW, verdicts
 from studies.readings.targets import FITTED, HELD_OUT, NOT_OUT, SHARE, SHARE_OF_RANGE, SHOWN, TARGETS
 
 ENDS = ("", "_low", "_high")
@@ -69,6 +69,8 @@ def why_default(found: xr.Dataset) -> str:
         more = f"; {', '.join(rivals)} cannot be told apart from it" if rivals else ""
         return f"The default, {DEFAULT}, has the best score{more}."
     apart = _words(found.sel(group="all", reading=DEFAULT, other=best), "difference")
+    if words[DEFAULT] == TOO_FEW:
+        return f"Too few seeds to judge the default, {DEFAULT}."
     if words[DEFAULT] == "ruled out":
         return f"The default, {DEFAULT}, is RULED OUT: its score is above that of {best} by {apart}."
     return (
@@ -143,7 +145,8 @@ A sum over the published statements, 0 where all are met exactly, so that less i
 
 Intervals resample seeds, the same ones in all cells and readings, since a seed means the same bodies and places
 everywhere; differences are paired. A reading is ruled out when the interval of its score less the best one's lies
-above 0. The tolerances are choices, and {len(READINGS) - 1} comparisons at 95 % may rule out one that is as good.
+above 0; with fewer than {LEAST_SEEDS} seeds nothing is. The tolerances are choices, and
+{len(READINGS) - 1} comparisons at 95 % may rule out one that is as good.
 
 The default was chosen after its authors had seen these numbers. The statements of Figures 4 and 7 are those that it was
 fitted to; Figures 5, 9 and 10 are scored apart, as held out. They are no proof either: they had been read as well,

@@ -10,6 +10,8 @@ from studies.readings.targets import FITTED, HELD_OUT, TARGETS, Floats, Sample
 
 RESAMPLES = 2000
 CONFIDENCE = 0.95
+LEAST_SEEDS = 6  # three seeds have ten different resamples, and an interval that is too narrow
+TOO_FEW = "too few seeds"
 GROUPS = ("all", FITTED, HELD_OUT)
 
 
@@ -96,7 +98,10 @@ def _by_group(of_targets: Floats) -> Floats:
 
 
 def verdicts(found: xr.Dataset) -> dict[str, str]:
-    """For each reading "best", "ruled out" or "not told apart" from the best, by the paired difference of scores."""
+    """For each reading "best", "ruled out" or "not told apart" from the best, by the paired difference of scores.
+
+    With fewer than LEAST_SEEDS seeds nothing is decided: "too few seeds".
+    """
     of_all = found.sel(group="all")
     best = str(of_all.reading.values[int(of_all.score.values.argmin())])
     apart = of_all.sel(other=best)
@@ -104,4 +109,6 @@ def verdicts(found: xr.Dataset) -> dict[str, str]:
     words = {
         str(name): "ruled out" if bool(worse.sel(reading=name)) else "not told apart" for name in found.reading.values
     }
+    if found.attrs["seeds"] < LEAST_SEEDS:
+        words = dict.fromkeys(words, TOO_FEW)
     return words | {best: "best"}
