@@ -2,7 +2,6 @@
 
 import matplotlib as mpl
 import matplotlib.pyplot as plt
-import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -11,7 +10,7 @@ from studies.presentation import figures
 from studies.readings.page import ranked
 from studies.readings.room import DEFAULT
 from studies.readings.score import TOO_FEW, verdicts
-from studies.readings.targets import TARGETS
+from studies.readings.targets import MOST, TARGETS
 
 LINEAR_TO = 10.0  # of the axes of scores, logarithmic beyond
 MARKERS = {
@@ -20,7 +19,6 @@ MARKERS = {
     "ruled out": ("X", figures.ORANGE, 5),
     TOO_FEW: ("s", figures.GREY, 4),
 }
-TOP = 100.0  # term at which colours end: ten tolerances
 
 
 def plot(found: xr.Dataset) -> Figure:
@@ -50,7 +48,7 @@ def _differences(axis: Axes, found: xr.Dataset) -> None:
         axis.plot([], [], marker, color=colour, ms=size, label=word)
     axis.axvline(0.0, color=figures.GREY, lw=0.8, zorder=0)
     axis.set_xscale("symlog", linthresh=LINEAR_TO, linscale=0.8)
-    axis.set_xticks([-100, -10, 0, 10, 100, 1000], ["-100", "-10", "0", "10", "100", "1000"])
+    axis.set_xticks([-100, -10, 0, 10, 100], ["-100", "-10", "0", "10", "100"])
     low = float(apart.difference_low.min())
     axis.set_xlim(min(1.5 * low, -3.0), 1.6 * float(apart.difference_high.max()))
     axis.set_yticks(range(len(names)), [f"{name} (default)" if name == DEFAULT else name for name in names])
@@ -60,8 +58,8 @@ def _differences(axis: Axes, found: xr.Dataset) -> None:
 
 
 def _terms(figure: Figure, axis: Axes, found: xr.Dataset) -> None:
-    values = np.clip(found.term.transpose("target", "reading").values, 0.0, TOP)
-    colours = mpl.colors.PowerNorm(0.5, vmin=0.0, vmax=TOP)
+    values = found.term.transpose("target", "reading").values
+    colours = mpl.colors.PowerNorm(0.5, vmin=0.0, vmax=MOST)
     image = axis.imshow(values, aspect="auto", cmap="cividis_r", norm=colours)
     axis.set_yticks(range(len(TARGETS)), [f"{target.figure}: {short(target.statement)}" for target in TARGETS])
     axis.set_xticks(range(found.reading.size), found.reading.values, rotation=90)
@@ -72,7 +70,7 @@ def _terms(figure: Figure, axis: Axes, found: xr.Dataset) -> None:
     axis.set_ylabel("Figure: statement (held out below the line)")
     bar = figure.colorbar(image, ax=axis, orientation="horizontal", aspect=40, pad=0.02)
     bar.set_label("added to the score (1)")
-    bar.set_ticks([0, 1, 4, 16, 36, 64, 100], labels=["0", "1", "4", "16", "36", "64", "100+"])
+    bar.set_ticks([0, 1, 4, 9, 16, 25])
 
 
 def short(statement: str) -> str:

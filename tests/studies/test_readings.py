@@ -114,9 +114,9 @@ def test_every_term_is_least_where_the_statement_is_met(found):
     assert term.loc["every run blocked, N=200 v_d=1.8: 1", "good"] < 1.0
 
 
-def test_a_deviation_of_one_tolerance_adds_one_and_no_run_out_a_hundred():
-    found = np.array([210.0, 231.0, np.nan])
-    assert targets.deviation(found, 210.0, 21.0).tolist() == [0.0, pytest.approx(1.0), 100.0]
+def test_a_deviation_of_one_tolerance_adds_one_and_far_or_no_run_out_the_most():
+    found = np.array([210.0, 231.0, 900.0, np.nan])
+    assert targets.deviation(found, 210.0, 21.0).tolist() == [0.0, pytest.approx(1.0), 25.0, 25.0]
 
 
 def test_the_predictive_of_blocking_is_the_beta_binomial():
