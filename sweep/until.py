@@ -64,6 +64,7 @@ def sweep_until(
     until: Until | str | Mapping[str, Any],
     jobs: int = 2,
     progress: bool = True,
+    **manner: Any,
 ) -> xr.Dataset:
     """Run as many seeds in each cell of a grid as its interval needs.
 
@@ -77,7 +78,7 @@ def sweep_until(
     store : folder of the runs; runs that it holds are not run again
     until : a rule; or its goals as a table or in words, "clearance_time=5%, blocked_share=0.1, budget=2000", see
         `studies.until.rules.until_of`
-    jobs, progress : see `sweep`
+    jobs, progress, manner : as of `sweep`
 
     Returns
     -------
@@ -99,7 +100,7 @@ def sweep_until(
     store, cells = Store(store), Cells(grid, until.least)
     try:
         while True:
-            ds, excess = cells.run(store, until.excess, jobs, progress)
+            ds, excess = cells.run(store, until.excess, jobs=jobs, progress=progress, **manner)
             wanted = cells.wanting(excess, until)
             if not wanted and until.refine is not None:
                 cells.add(until.refine(ds), until)
@@ -142,10 +143,10 @@ class Cells:
         axes = {name: seeds if name == SEED else self.axes[name] for name in self.grid.axes}
         return Grid(self.grid.room, **axes, **self.grid.constants)
 
-    def run(self, store: Store, excess: Excess, jobs: int, progress: bool) -> tuple[xr.Dataset, xr.DataArray]:
+    def run(self, store: Store, excess: Excess, **manner: Any) -> tuple[xr.Dataset, xr.DataArray]:
         """Run what was given last; the dataset of all that is given and nothing else, and the excess of its cells."""
         if self.done != self.seeds:
-            sweep(self._rows(), store, jobs=jobs, progress=progress)
+            sweep(self._rows(), store, **manner)
         self.done = dict(self.seeds)
         ds = gather(self.whole(), store)
         given = self._number_given(ds)
