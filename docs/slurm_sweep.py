@@ -34,7 +34,7 @@ def main() -> None:
     parser.add_argument("--timeout", type=float, help="time that one run may take, s")
     parser.add_argument("--print-job-script", action="store_true", help="print what is submitted, and submit nothing")
     chosen = parser.parse_args()
-    grid, store = read_gridfile(chosen.grid)
+    grid, store, _ = read_gridfile(chosen.grid)
     with SLURMCluster(**JOB) as cluster:
         if chosen.print_job_script:
             print(cluster.job_script())

@@ -6,25 +6,32 @@ grid = Grid(rooms.lin_room, v_d=[0.6, 1.0], N=[100, 200], seed=range(10))
 ds = sweep(grid, store="results/mine")
 """
 
-from sweep.errors import DamagedFile, SweepStopped
-from sweep.gather import gather, open_results
+from sweep.compact import compact
+from sweep.errors import CannotWrite, DamagedFile, SweepStopped
+from sweep.gather import gather
 from sweep.grid import Grid
-from sweep.runfile import read_run, to_dataset, write_run
+from sweep.reading import read_run
+from sweep.results import open_results
+from sweep.runfile import to_dataset, write_run
 from sweep.runner import sweep
 from sweep.store import Store
 from sweep.until import Until, sweep_until
+from sweep.verify import verify
 
 __all__ = [
+    "CannotWrite",
     "DamagedFile",
     "Grid",
     "Store",
     "SweepStopped",
     "Until",
+    "compact",
     "gather",
     "open_results",
     "read_run",
     "sweep",
     "sweep_until",
     "to_dataset",
+    "verify",
     "write_run",
 ]

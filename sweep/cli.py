@@ -16,14 +16,13 @@ from engine import FINGERPRINT, OUTCOMES, BadInput
 from engine.errors import require
 from sweep import runner
 from sweep.backends import BACKENDS, DASK, LOKY
-from sweep.durable import require_writable
 from sweep.errors import DamagedFile, SweepStopped
-from sweep.gather import gather as gathered
-from sweep.grid import Grid
 from sweep.gridfile import read_gridfile, read_until
 from sweep.report import tell
 from sweep.run_command import run
+from sweep.status import status_of
 from sweep.store import Store
+from sweep.store_commands import code_option, compact, gather, say, status, verify
 from sweep.until import account, sweep_until
 
 FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130  # exit codes
@@ -82,25 +81,32 @@ def cli() -> None:
     """  # noqa: D301  click reads \b as a character
 
 
-cli.add_command(run)
+for command in (run, status, gather, verify, compact):
+    cli.add_command(command)
 
 
 @cli.command()
 @click.argument("file", type=click.Path(path_type=Path))
 @jobs_option
 @dry_option
+@click.option("--why", is_flag=True, help="With --dry-run: also say which runs are to do, and why.")
+@code_option
 @click.option("--backend", default=None, help=f"One of {', '.join(BACKENDS)}.  [default: {LOKY}]")
 @click.option("--scheduler", metavar="ADDRESS", help="Scheduler of a dask cluster that sees the store.")
 @click.option("--timeout", type=float, metavar="SECONDS", help="End a run that takes longer; the others go on.")
 @click.option("--memory-limit", metavar="SIZE", help='End a worker that takes more, such as "2 GB".')
 @click.option("--fail-fast", is_flag=True, help="Begin no further run after one that failed.")
 @click.option("--retry", is_flag=True, help="Try again what is set aside: ended its workers, or ran out of time.")
-def sweep(file: Path, jobs: int, dry_run: bool, backend: str | None, **manner: Any) -> None:
+def sweep(
+    file: Path, jobs: int, dry_run: bool, why: bool, on_code_change: str | None, backend: str | None, **manner: Any
+) -> None:
     """Run what is missing of the grid that FILE (TOML) describes, and gather it.
 
     \b
     room = "lin_room"
     store = "results/mine"       # from where the command is given
+    on_code_change = "rerun"     # or "accept", "error": runs that another state of the engine made
+    common_random_numbers = true # false: every cell draws its own
     [axes]
     v_d = [0.6, 1.0]
     seed = { first = 0, last = 9, step = 1 }
@@ -114,18 +120,21 @@ def sweep(file: Path, jobs: int, dry_run: bool, backend: str | None, **manner: A
     Exit code 1 if a run failed; the others are done nevertheless. Ctrl-C lets the runs under way finish, a second one
     ends them; both give exit code 130, and the same command resumes.
     """  # noqa: D301  click reads \b as a character
-    grid, path = read_gridfile(file)
+    described = read_gridfile(file)
+    choice, kept = on_code_change or described.on_code_change, Store(described.store)
     if dry_run:
-        click.echo(str(runner.plan_of(grid, Store(path))))
+        kept.check()
+        say(status_of(described.grid, kept, choice), why)
         return
     manner["backend"] = backend or (DASK if manner["scheduler"] else LOKY)
+    manner["on_code_change"] = choice
     until = read_until(file)
     if until is None:
-        _finish(runner.sweep(grid, path, jobs, **manner), Store(path).dataset)
+        _finish(runner.sweep(described.grid, kept, jobs, **manner), kept.dataset)
         return
-    ds = sweep_until(grid, path, until, jobs, **manner)
+    ds = sweep_until(described.grid, kept, until, jobs, **manner)
     click.echo(account(ds))
-    _finish(ds, Store(path).dataset, meant=int((ds.seeds_given.max() - ds.seeds_given).sum()))
+    _finish(ds, kept.dataset, meant=int((ds.seeds_given.max() - ds.seeds_given).sum()))
 
 
 def _finish(ds: xr.Dataset, path: Path, meant: int = 0) -> None:
@@ -136,49 +145,6 @@ def _finish(ds: xr.Dataset, path: Path, meant: int = 0) -> None:
     click.echo(str(path))
     if number["missing"]:
         raise click.exceptions.Exit(FAILED)
-
-
-@cli.command()
-@click.argument("store", type=click.Path(path_type=Path))
-def status(store: Path) -> None:
-    """Say how much of the grid last swept into STORE is done.
-
-    \b
-    jamsweep status results/mine
-    """  # noqa: D301  click reads \b as a character
-    kept = Store(store)
-    plan = runner.plan_of(_grid_of(kept), kept)
-    failed = sum((kept.failed / f"{task.key}.txt").exists() for task in plan.missing)
-    click.echo(f"{plan}; {failed} of them failed before, see {kept.failed}" if failed else str(plan))
-
-
-@cli.command()
-@click.argument("store", type=click.Path(path_type=Path))
-@click.option("-o", "--output", type=click.Path(dir_okay=False, path_type=Path), help="Also write the dataset here.")
-def gather(store: Path, output: Path | None) -> None:
-    """Gather the runs in STORE into its dataset.nc, as far as they are done.
-
-    \b
-    jamsweep gather results/mine -o mine.nc
-    """  # noqa: D301  click reads \b as a character
-    if output:
-        require_writable(output.absolute().parent, "output folder")
-    kept = Store(store)
-    ds = gathered(_grid_of(kept), kept)
-    if output:
-        ds.to_netcdf(output)
-    click.echo(str(output or kept.dataset))
-
-
-def _grid_of(store: Store) -> Grid:
-    remedy = "name the folder of a sweep"
-    require(store.grid.is_file(), "store", f"'{store.path}'", "holds no sweep", remedy)
-    try:
-        return Grid.from_json(store.grid.read_text("utf-8"))
-    except BadInput as error:  # of a room of one's own, which no name leads to
-        raise BadInput(f"{error} (sweep.open_results opens the dataset from Python)") from None
-    except (ValueError, KeyError, TypeError):  # of JSON, of UTF-8, or no grid
-        raise DamagedFile(f"grid '{store.grid}' is damaged: sweep again, which writes it anew") from None
 
 
 @cli.command()

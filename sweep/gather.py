@@ -1,36 +1,53 @@
 """Gathering: the runs of a grid as one dataset, kept in one file."""
 
-import hashlib
 import json
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
-import netCDF4
 import numpy as np
 import xarray as xr
 
 from engine import FINGERPRINT
-from engine.errors import require
 from sweep import schema
-from sweep.durable import replace_durably
 from sweep.errors import DamagedFile
+from sweep.facts import Facts, Source
 from sweep.grid import Grid
+from sweep.keys import Wanted, keys_of
+from sweep.report import tell
+from sweep.results import CONTENT, is_made_of, keep_results, open_results
 from sweep.schema import GATHERED, Variable
-from sweep.store import Entry, Store
+from sweep.serving import RERUN, Serving, serving
+from sweep.store import Store
 
 COMMON = (
     "Common random numbers: the same seed means the same places and bodies, whatever the values of the other "
     "axes, as far as room and N are the same. Differences between runs of one seed are paired differences."
 )
-Facts = dict[str, np.ndarray]
+OWN = (
+    "Independent random numbers: every cell draws its own, from the seed and the cell's parameters. Runs of one seed "
+    "have nothing in common; differences between cells are not paired."
+)
 
 
-def gather(grid: Grid, store: Path | str | Store) -> xr.Dataset:
+class Gathered(NamedTuple):
+    """A dataset, and how many damaged runs were set aside for it."""
+
+    ds: xr.Dataset
+    aside: int
+
+
+def gather(grid: Grid, store: Path | str | Store, on_code_change: str = RERUN) -> xr.Dataset:
     """The runs of a grid that are in a store.
 
-    `dataset.nc` in the store is rebuilt if the grid or one of its runs changed since it was written.
+    `dataset.nc` in the store is rebuilt if the grid or one of its runs changed since it was written. Every file that
+    is read is held against its hash; one that is damaged is set aside (`KEY.nc.corrupt`), said, and its run missing.
+
+    Parameters
+    ----------
+    on_code_change : "accept" also takes runs of other states of the engine, and the attribute `accepted_engines` says
+        how many; "error" refuses, "rerun" leaves them out
 
     Returns
     -------
@@ -40,79 +57,60 @@ def gather(grid: Grid, store: Path | str | Store) -> xr.Dataset:
 
     Raises
     ------
+    BadInput
+        If the folder is none of a store.
     DamagedFile
-        If a run file that should be whole is not.
+        If a damaged file cannot be set aside.
+    SweepStopped
+        If there are runs of another engine and `on_code_change` is "error".
     """
+    return collect(grid, store, on_code_change).ds
+
+
+def collect(grid: Grid, store: Path | str | Store, on_code_change: str = RERUN) -> Gathered:
+    """As `gather`; also tells whether damage was met."""
     store = Store(store)
-    finished = store.finished()
-    keys = [schema.run_key(grid.scenario(point)) for point in grid.points()]
-    content = _content(grid, keys, finished)
-    if content == _content_of(store.dataset):
+    store.check()
+    wanted = keys_of(grid, store)
+    served = serving(wanted, store, on_code_change)
+    content = served.content(wanted, grid.to_json())
+    if is_made_of(store, content):
         with suppress(DamagedFile):  # it can be made again
-            return open_results(store.path)
-    rows = [_facts(store, key) if key in finished else None for key in keys]
-    ds = _dataset(grid, rows).assign_attrs(content=content)
-    replace_durably(store.dataset, lambda path: _write(ds, path))
+            return Gathered(open_results(store.path), 0)
+    rows, aside = _rows(wanted, served, store)
+    whole = Serving({key: entry for key, entry in served.entries.items() if rows[key]}, served.stale)
+    ds = _dataset(grid, [rows[w.key] for w in wanted], whole)
+    return Gathered(_kept(ds.assign_attrs({CONTENT: whole.content(wanted, grid.to_json())}), store), aside)
+
+
+def _kept(ds: xr.Dataset, store: Store) -> xr.Dataset:
+    """The dataset as the store has it from now on; as it is, where the store takes no more."""
+    try:
+        keep_results(ds, store)
+    except OSError as error:
+        tell(f"the dataset is not kept in '{store.path}' ({(error.strerror or 'refused').lower()})")
+        return ds
     return open_results(store.path)
 
 
-def open_results(path: Path | str) -> xr.Dataset:
-    """The gathered dataset of a store.
-
-    Raises
-    ------
-    BadInput
-        If the store has none.
-    DamagedFile
-        If it cannot be read.
-    """
-    store = Store(path)
-    remedy = "run its sweep, or `jamsweep gather`, first"
-    require(store.dataset.is_file(), "store", f"'{store.path}'", "holds no gathered dataset", remedy)
-    try:
-        with xr.open_dataset(store.dataset, engine="netcdf4") as ds:
-            return ds.load()
-    except (OSError, RuntimeError):
-        raise DamagedFile(f"dataset '{store.dataset}' is damaged: delete it and gather again") from None
+def _rows(wanted: list[Wanted], served: Serving, store: Store) -> tuple[dict[str, Facts | None], int]:
+    """Key -> what the run adds to the dataset, None if there is none; and the number of runs set aside."""
+    source = Source(store)
+    rows: dict[str, Facts | None] = {}
+    for key in (w.key for w in wanted):
+        entry = served.entries.get(key)
+        rows[key] = source.facts(entry) if entry else None
+    return rows, source.aside
 
 
-def _content(grid: Grid, keys: list[str], finished: Mapping[str, Entry]) -> str:
-    """Hash of what a dataset is made of: the grid, and the files of its runs."""
-    files = [finished[key].sha256 if key in finished else "" for key in keys]
-    return hashlib.sha256(json.dumps([grid.to_json(), keys, files]).encode()).hexdigest()
-
-
-def _content_of(path: Path) -> str:
-    try:
-        with netCDF4.Dataset(path) as file:
-            return str(file.content)
-    except (OSError, AttributeError):  # absent, or not of this kind
-        return ""
-
-
-def _facts(store: Store, key: str) -> Facts:
-    """What a run file adds to the dataset."""
-    path = store.file(key)
-    try:
-        with netCDF4.Dataset(path) as file:
-            file.set_auto_maskandscale(False)
-            whole = (file.complete, file.run_key) == (1, key)
-            facts = {v.name: file.variables[v.name][:] for v in GATHERED}
-    except (OSError, RuntimeError, AttributeError, KeyError):
-        whole = False
-    if not whole:
-        raise DamagedFile(f"run file '{path}' is damaged: delete it and sweep again")
-    return facts
-
-
-def _dataset(grid: Grid, rows: list[Facts | None]) -> xr.Dataset:
+def _dataset(grid: Grid, rows: list[Facts | None], served: Serving) -> xr.Dataset:
     ranks = max((len(row["exit_time"]) for row in rows if row), default=0)
     ranks = max(ranks, 1)  # a dimension without length would stop every reduction
     variables = {v.name: _variable(v, grid, rows, ranks) for v in GATHERED}
     coords: dict[str, Any] = {name: (name, list(values), _described(name)) for name, values in grid.axes.items()}
     coords |= {name: ((), value, _described(name)) for name, value in grid.constants.items()}
     coords["exit"] = ("exit", np.arange(1, ranks + 1), schema.RANK)
-    return xr.Dataset(variables, coords, _attributes(grid))
+    return xr.Dataset(variables, coords, _attributes(grid, served.engines()))
 
 
 def _variable(variable: Variable, grid: Grid, rows: list[Facts | None], ranks: int) -> xr.Variable:
@@ -132,7 +130,7 @@ def _described(name: str) -> dict[str, str]:
     return {"units": units, "long_name": long_name} if units else {"long_name": name}
 
 
-def _attributes(grid: Grid) -> dict[str, Any]:
+def _attributes(grid: Grid, others: Mapping[str, int]) -> dict[str, Any]:
     return {
         "Conventions": schema.CONVENTIONS,
         "title": f"Runs of {grid.name}",
@@ -140,14 +138,9 @@ def _attributes(grid: Grid) -> dict[str, Any]:
         "constants": json.dumps(dict(grid.constants)),
         "defaults": json.dumps(grid.defaults),
         "grid": grid.to_json(),
-        "random_numbers": COMMON,
+        "common_random_numbers": np.int8(grid.common_random_numbers),
+        "random_numbers": COMMON if grid.common_random_numbers else OWN,
         "engine_fingerprint": FINGERPRINT,
         "schema_version": np.int32(schema.SCHEMA_VERSION),
+        **({"accepted_engines": json.dumps(others)} if others else {}),
     }
-
-
-def _write(ds: xr.Dataset, path: Path) -> None:
-    numeric = {name for name, variable in ds.variables.items() if variable.dtype.kind in "iufb"}
-    packed = {"zlib": True, "complevel": 1, "shuffle": True}
-    encoding = {n: ({"_FillValue": None} | (packed if n in numeric and ds[n].ndim else {})) for n in numeric}
-    ds.to_netcdf(path, engine="netcdf4", format="NETCDF4", encoding=encoding)

@@ -1,5 +1,6 @@
 """A grid: axes and constants over the keywords of a room, each point a scenario."""
 
+import hashlib
 import inspect
 import itertools
 import json
@@ -19,6 +20,7 @@ Scalar = bool | int | float | str
 Point = dict[str, Scalar]
 Room = Callable[..., Scenario]
 
+SEED, CHOICE = "seed", "common_random_numbers"
 KINDS = {float: "a number", int: "a whole number", bool: "true or false", str: "a word"}
 
 
@@ -28,6 +30,9 @@ class Grid:
     Parameters
     ----------
     room : a function of named parameters -> Scenario, or its name in `engine.rooms.ROOMS`
+    common_random_numbers : whether runs of one seed begin with the same random numbers, whatever the values of the
+        other axes; if not, every cell draws its own, from the seed and from the parameters that differ from the
+        room's defaults, so that a grid that is extended keeps its runs
     keywords : keywords of the room; a list, tuple, range or array is an axis, a number or word a constant
 
     Attributes
@@ -35,6 +40,7 @@ class Grid:
     room, name : the function, and its name as datasets have it
     axes : name -> tuple of values, in the order given
     constants : name -> value
+    common_random_numbers : as given
 
     Raises
     ------
@@ -42,17 +48,22 @@ class Grid:
         If the room or a keyword is unknown, an axis is empty or repeats a value, or a point is no scenario.
     """
 
-    def __init__(self, room: Room | str, /, **keywords: Any) -> None:
-        self.room = _room(room)
+    def __init__(self, room: Room | str, /, *, common_random_numbers: Any = True, **keywords: Any) -> None:
+        self._describe(_room(room), common_random_numbers, keywords)
+        for point in self._telling():
+            self.scenario(point)
+
+    def _describe(self, room: Room, common_random_numbers: Any, keywords: Mapping[str, Any]) -> None:
+        self.room = room
         self.name = _name(self.room)
+        self._known = inspect.signature(room).parameters
         _check_names(self.name, self.room, keywords)
         kinds = {name: plain_kind(hint) for name, hint in get_type_hints(self.room).items()}
         axes = {name: _axis(name, given, kinds.get(name)) for name, given in keywords.items() if _many(given)}
         constants = {n: _scalar(n, given, kinds.get(n)) for n, given in keywords.items() if n not in axes}
         self.axes: Mapping[str, tuple[Scalar, ...]] = MappingProxyType(axes)
         self.constants: Mapping[str, Scalar] = MappingProxyType(constants)
-        for point in self.points():
-            self.scenario(point)
+        self.common_random_numbers = _choice(common_random_numbers, self)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -72,8 +83,12 @@ class Grid:
     def defaults(self) -> Point:
         """The room's other parameters, which keep their defaults."""
         given = {**self.axes, **self.constants}
-        parameters = inspect.signature(self.room).parameters
-        return {name: p.default for name, p in parameters.items() if name not in given}
+        return {name: p.default for name, p in self._known.items() if name not in given}
+
+    @property
+    def seeds_alone(self) -> bool:
+        """Whether the seed is known to decide nothing but the random numbers: so it is in the engine's rooms."""
+        return self.name in ROOMS and SEED in self._known
 
     def points(self) -> Iterator[Point]:
         """The axes' values at each point, the last axis fastest."""
@@ -90,28 +105,67 @@ class Grid:
         """
         parameters = {**self.constants, **point}
         try:
-            scenario = self.room(**parameters)
+            scenario = self.room(**parameters | self._own_seed(parameters))
             made = isinstance(scenario, Scenario)
             require(made, "room", self.name, f"returns {type(scenario).__name__}", "return a Scenario")
             return scenario
         except BadInput as error:
             raise BadInput(f"{error} (in {self.name} with {named(parameters)})") from None
 
+    def seed_of(self, point: Point) -> int:
+        """The seed that the room is given at a point."""
+        parameters = {**self.constants, **point}
+        given = parameters | self._own_seed(parameters)
+        return int(given.get(SEED, self._known[SEED].default))
+
     def to_json(self) -> str:
-        """Room, axes and constants as JSON."""
+        """Room, axes, constants and the choice of random numbers as JSON."""
         axes = {name: list(values) for name, values in self.axes.items()}
-        return json.dumps({"room": self.name, "axes": axes, "constants": dict(self.constants)})
+        own = {} if self.common_random_numbers else {CHOICE: False}
+        return json.dumps({"room": self.name, "axes": axes, "constants": dict(self.constants)} | own)
 
     @staticmethod
     def from_json(text: str) -> "Grid":
-        """The grid that `to_json` wrote, if its room is one of `engine.rooms.ROOMS`."""
+        """The grid that `to_json` wrote, if its room is one of `engine.rooms.ROOMS`; its points are not tried again."""
         plain = json.loads(text)
-        return Grid(plain["room"], **plain["axes"], **plain["constants"])
+        grid = Grid.__new__(Grid)
+        grid._describe(_room(plain["room"]), plain.get(CHOICE, True), {**plain["axes"], **plain["constants"]})
+        return grid
+
+    def _own_seed(self, parameters: Point) -> Point:
+        """The seed of a cell that has random numbers of its own; nothing where they are common."""
+        if self.common_random_numbers:
+            return {}
+        known = self._known
+        number = parameters.get(SEED, known[SEED].default)
+        require(number >= 0, SEED, number, "is not a whole number of 0 or more", "number the runs 0, 1, 2 ...")
+        differing = {n: v for n, v in parameters.items() if n != SEED and v != known[n].default}
+        exact = {n: v.hex() if isinstance(v, float) else v for n, v in differing.items()}
+        digest = hashlib.sha256(json.dumps([self.name, exact], sort_keys=True).encode()).digest()
+        cell = np.frombuffer(digest, "<u4").tolist()
+        return {SEED: int(np.random.SeedSequence(number, spawn_key=cell).generate_state(1, np.uint64)[0] >> 1)}
+
+    def _telling(self) -> Iterator[Point]:
+        """Points of which all are scenarios if these are."""
+        if not (self.seeds_alone and SEED in self.axes):
+            yield from self.points()
+            return
+        first = {name: values[0] for name, values in self.axes.items()}
+        yield from ({**first, SEED: seed} for seed in self.axes[SEED])
+        others = {name: values if name != SEED else values[:1] for name, values in self.axes.items()}
+        yield from (dict(zip(others, values, strict=True)) for values in itertools.product(*others.values()))
 
 
 def named(parameters: Mapping[str, Scalar]) -> str:
     """Parameters as a user reads them: "v_d = 1.0, N = 200"."""
     return ", ".join(f"{name} = {value}" for name, value in parameters.items()) or "all defaults"
+
+
+def _choice(common: Any, grid: Grid) -> bool:
+    require(type(common) is bool, CHOICE, repr(common), "is not true or false", "give one of them")
+    seeded = common or SEED in inspect.signature(grid.room).parameters
+    require(seeded, "room", grid.name, f"has no keyword {SEED}", f"let it have one, or leave {CHOICE} true")
+    return bool(common)
 
 
 def _room(room: Room | str) -> Room:

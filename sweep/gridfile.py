@@ -2,6 +2,8 @@
 
 room = "lin_room"
 store = "results/mine"
+on_code_change = "rerun"      # may be left out
+common_random_numbers = true  # the same
 
 [axes]
 v_d = [0.6, 1.0]
@@ -18,21 +20,30 @@ blocked_share = 0.1
 import math
 import tomllib
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from engine import BadInput
 from engine.errors import require
-from sweep.grid import Grid
+from sweep.grid import CHOICE, Grid
+from sweep.serving import ON_CODE_CHANGE, RERUN
 
-PARTS = ("room", "store", "axes", "constants", "until")
+PARTS = ("room", "store", "on_code_change", CHOICE, "axes", "constants", "until")
 SPAN = ("first", "last", "step")
 MOST_VALUES = 100_000
 
 
-def read_gridfile(path: Path) -> tuple[Grid, str]:
-    """The grid and the path of the store that a file describes.
+class GridFile(NamedTuple):
+    """What a file describes."""
+
+    grid: Grid
+    store: str  # its path
+    on_code_change: str = RERUN
+
+
+def read_gridfile(path: Path) -> GridFile:
+    """The grid, the path of the store, and the choices that a file describes.
 
     Raises
     ------
@@ -55,7 +66,11 @@ def read_gridfile(path: Path) -> tuple[Grid, str]:
     constants = {name: _constant(name, given) for name, given in _table(parts, "constants").items()}
     for name in axes:
         require(name not in constants, "keyword", repr(name), "is both axis and constant", "remove one of them")
-    return Grid(parts["room"], **axes, **constants), parts["store"]
+    choice = parts.get("on_code_change", RERUN)
+    remedy = f"choose one of {', '.join(ON_CODE_CHANGE)}"
+    require(choice in ON_CODE_CHANGE, f"{path}: on_code_change", repr(choice), "is not known", remedy)
+    common = {CHOICE: parts[CHOICE]} if CHOICE in parts else {}
+    return GridFile(Grid(parts["room"], **common, **axes, **constants), parts["store"], choice)
 
 
 def read_until(path: Path) -> dict[str, Any] | None:

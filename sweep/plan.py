@@ -5,11 +5,15 @@ from typing import NamedTuple
 from engine import Scenario
 from sweep.estimate import Durations
 from sweep.grid import Grid, Point
+from sweep.keys import keys_of
 from sweep.limits import Limits
 from sweep.notes import held_back
-from sweep.schema import run_key
+from sweep.report import tell
+from sweep.serving import RERUN, changed, serving
 from sweep.store import Store
 from sweep.worker import Kind, kind_of
+
+NOTHING: Kind = ()  # of a run that is done
 
 
 class Task(NamedTuple):
@@ -39,15 +43,18 @@ class Plan(NamedTuple):
         return words if left else f"{words}; nothing to run"
 
 
-def plan_of(grid: Grid, store: Store) -> Plan:
-    """What a sweep would find done and to do."""
-    finished, tasks = store.finished(), dict[str, Task]()
+def plan_of(grid: Grid, store: Store, on_code_change: str = RERUN) -> Plan:
+    """What a sweep would find done and to do; runs that another state of the engine made are said."""
+    wanted = keys_of(grid, store)
+    served = serving(wanted, store, on_code_change)
+    if served.stale:
+        tell(f"{changed(served.stale, len(wanted))}: run anew (on_code_change = 'accept' would take them as they are)")
     kinds: dict[Kind, Kind] = {}  # one object for each, which tasks share
-    for point in grid.points():
-        scenario = grid.scenario(point)
-        key, kind = run_key(scenario), kind_of(scenario)
+    tasks: dict[str, Task] = {}
+    for (key, _), point in zip(wanted, grid.points(), strict=True):
+        kind = NOTHING if key in served.entries else kind_of(grid.scenario(point))
         tasks[key] = Task(key, point, grid, kinds.setdefault(kind, kind))
-    return Plan(list(tasks.values()), [task for key, task in tasks.items() if key not in finished])
+    return Plan(list(tasks.values()), [task for key, task in tasks.items() if key not in served.entries])
 
 
 def not_held_back(tasks: list[Task], store: Store, limits: Limits) -> list[Task]:

@@ -1,13 +1,13 @@
 """One run, as a file and as a dataset."""
 
 from pathlib import Path
+from typing import Any, NamedTuple
 
 import netCDF4
 import numpy as np
 import xarray as xr
 
 from engine import Run
-from engine.errors import require
 from sweep import schema
 from sweep.durable import replace_durably
 from sweep.schema import Variable
@@ -15,29 +15,23 @@ from sweep.schema import Variable
 TOGETHER = 8  # persons in one chunk of a file
 
 
+class Stored(NamedTuple):
+    """A run as its file holds it: values as they are stored, of variables that may be packed."""
+
+    variables: tuple[tuple[Variable, np.ndarray], ...]
+    attributes: dict[str, Any]
+
+
 def write_run(run: Run, path: Path | str) -> None:
     """Write a run as netCDF4; equal runs make equal files, byte for byte.
 
     Exits and contacts are CF contiguous ragged arrays, counted by `N_out` and `row_size`.
     """
-    replace_durably(Path(path), lambda temporary: _write(run, temporary))
+    replace_durably(Path(path), lambda temporary: write_stored(stored(run), temporary))
 
 
-def read_run(path: Path | str) -> xr.Dataset:
-    """What `to_dataset` makes of the run that this file holds.
-
-    Raises
-    ------
-    BadInput
-        If there is no such file.
-    """
-    require(
-        Path(path).is_file(),
-        "run file",
-        f"'{path}'",
-        "does not exist",
-        "name a file that a run was written to",
-    )
+def open_run(path: Path) -> xr.Dataset:
+    """What `to_dataset` makes of the run that a file holds."""
     with xr.open_dataset(path, engine="netcdf4") as ds:
         return _with_rank(ds.load().isel(run=0))
 
@@ -63,12 +57,29 @@ def _attributes(variable: Variable) -> dict[str, object]:
     return variable.attributes() | counting
 
 
-def _write(run: Run, path: Path) -> None:
+def stored(run: Run) -> Stored:
+    """What the file of a run is to hold."""
+    values = ((v, schema.fact(run, v)) for v in schema.recorded(run))
+    packed = ((v, schema.packed(x, v.resolution) if v.resolution else x) for v, x in values)
+    return Stored(tuple(packed), schema.run_attributes(run))
+
+
+def read_stored(path: Path) -> Stored:
+    """What a run file holds, every value of it."""
+    with netCDF4.Dataset(path) as file:
+        file.set_auto_maskandscale(False)
+        variables = (schema.named(name, packed="scale_factor" in v.ncattrs()) for name, v in file.variables.items())
+        values = tuple((v, file.variables[v.name][:]) for v in variables)
+        return Stored(values, {name: file.getncattr(name) for name in file.ncattrs()})
+
+
+def write_stored(run: Stored, path: Path) -> None:
+    """Write a new file; not durable by itself."""
     with netCDF4.Dataset(path, "x", format="NETCDF4") as file:
         file.set_fill_off()
-        for variable in schema.recorded(run):
-            _write_variable(file, variable, schema.fact(run, variable))
-        file.setncatts(schema.run_attributes(run))
+        for variable, values in run.variables:
+            _write_variable(file, variable, values)
+        file.setncatts(run.attributes)
 
 
 def _write_variable(file: netCDF4.Dataset, variable: Variable, values: np.ndarray) -> None:
@@ -76,27 +87,29 @@ def _write_variable(file: netCDF4.Dataset, variable: Variable, values: np.ndarra
     for name, size in zip(variable.dims, values.shape, strict=True):
         if name not in file.dimensions:
             file.createDimension(name, size)
-    attributes = _attributes(variable)
-    if variable.dims[0] == "sample" and variable.name != "time":
-        attributes["coordinates"] = "time"
-    fill, kind = None, variable.dtype
-    if variable.resolution:
-        values, fill, kind = schema.packed(values, variable.resolution), schema.NOTHING, "i4"
-        attributes["scale_factor"] = variable.resolution
-    chunks = _chunks(variable, values.shape)
-    stored = file.createVariable(
+    kept = file.createVariable(
         variable.name,
-        kind,
+        variable.stored_dtype,
         variable.dims,
         zlib=True,
         complevel=1,
         shuffle=True,
-        fill_value=fill,
-        chunksizes=chunks,
+        fill_value=schema.NOTHING if variable.resolution else None,
+        chunksizes=_chunks(variable, values.shape),
     )
-    stored.setncatts(attributes)
-    stored.set_auto_maskandscale(False)
-    stored[:] = values
+    kept.setncatts(stored_attributes(variable))
+    kept.set_auto_maskandscale(False)
+    kept[:] = values
+
+
+def stored_attributes(variable: Variable) -> dict[str, Any]:
+    """Attributes of a variable in a file."""
+    attributes = _attributes(variable)
+    if variable.dims[0] == "sample" and variable.name != "time":
+        attributes["coordinates"] = "time"
+    if variable.resolution:
+        attributes["scale_factor"] = variable.resolution
+    return attributes
 
 
 def _chunks(variable: Variable, shape: tuple[int, ...]) -> tuple[int, int] | None:

@@ -6,13 +6,17 @@ import xarray as xr
 
 from engine.errors import require
 from sweep.backends import chosen
+from sweep.errors import DamagedFile
 from sweep.execution import Execution, Manner
-from sweep.gather import gather
+from sweep.gather import collect
 from sweep.grid import Grid
 from sweep.limits import limits_of
-from sweep.plan import durations_of, longest_first, not_held_back, plan_of
+from sweep.plan import Plan, durations_of, longest_first, not_held_back, plan_of
 from sweep.report import tell
+from sweep.serving import RERUN
 from sweep.store import Store
+
+ATTEMPTS = 3  # at a sweep whose files are damaged as soon as they are written
 
 
 def sweep(
@@ -21,6 +25,7 @@ def sweep(
     jobs: int = 2,
     progress: bool = True,
     *,
+    on_code_change: str = RERUN,
     backend: str | None = None,
     scheduler: str | None = None,
     timeout: float | None = None,
@@ -37,6 +42,8 @@ def sweep(
     jobs : number of worker processes; 1 runs in this process, if no back end is named and nothing limits a run. No
         value depends on it.
     progress : whether to say how far it is; failing runs are always said
+    on_code_change : what becomes of runs that another state of the engine made: "rerun" runs them anew, "accept" takes
+        them as they are (`accepted_engines` of the dataset says how many), "error" stops
     backend : "loky" (worker processes of this machine), "serial" (this process) or "dask"
     scheduler : address of a dask scheduler; without one, the back end "dask" starts `jobs` workers of its own
     timeout : time that one run may take, s; it is then ended, noted as failed, and the sweep goes on
@@ -56,8 +63,12 @@ def sweep(
     BadInput
         If the store cannot be written to or is not seen by the workers, or an option is not valid.
     SweepStopped
-        If a run failed and `fail_fast` is set, the engine was edited meanwhile, or no workers can be had; finished
-        runs are kept.
+        If a run failed and `fail_fast` is set, `on_code_change` is "error" and there are such runs, the engine was
+        edited meanwhile, or no workers can be had; finished runs are kept.
+    CannotWrite
+        If the disk is full; finished runs are kept.
+    DamagedFile
+        If files that were just written are damaged time and again.
     KeyboardInterrupt
         After Ctrl-C: the first lets the runs under way finish, a second ends them. Finished runs are kept.
     """
@@ -67,15 +78,26 @@ def sweep(
     manner = Manner(chosen(backend, jobs, scheduler, limits), jobs, scheduler, limits, fail_fast, progress)
     store = Store(store)
     store.make()
+    store.sweep_leftovers()
+    torn = store.set_torn_aside()
+    if torn:
+        tell(f"{len(torn)} run file{' is' if len(torn) == 1 else 's are'} damaged: set aside (.corrupt) and run again")
     store.note_grid(grid.to_json())
-    plan = plan_of(grid, store)
-    if progress:
+    for _ in range(ATTEMPTS):
+        _run_missing(plan_of(grid, store, on_code_change), grid, store, manner, retry)
+        gathered = collect(grid, store, on_code_change)
+        if not gathered.aside:  # damaged runs that gathering met are run again
+            return gathered.ds
+    raise DamagedFile(f"store '{store.path}' damages what is written to it: check its disk")
+
+
+def _run_missing(plan: Plan, grid: Grid, store: Store, manner: Manner, retry: bool) -> None:
+    if manner.shown:
         tell(str(plan))
-    tasks = plan.missing if retry else not_held_back(plan.missing, store, limits)
+    tasks = plan.missing if retry else not_held_back(plan.missing, store, manner.limits)
     aside = len(plan.missing) - len(tasks)
     if aside:
         tell(f"{aside} of them set aside, see {store.failed}: retry=True (--retry) tries them again")
     if tasks:
         durations = durations_of(plan, grid, store)
         Execution(longest_first(tasks, durations), durations, grid, store, manner).run()
-    return gather(grid, store)

@@ -38,6 +38,11 @@ class Variable(NamedTuple):
     counts: str = ""  # CF contiguous ragged arrays: the dimension whose elements are counted
     resolution: float = 0.0  # where above 0, a file holds whole multiples of it (CF packed data, scale_factor)
 
+    @property
+    def stored_dtype(self) -> str:
+        """Type of the values in a file."""
+        return "i4" if self.resolution else self.dtype
+
     def attributes(self) -> dict[str, Any]:
         """What the variable says about itself wherever it stands."""
         return {"units": self.units, "long_name": self.long_name, **self.attrs}
@@ -91,6 +96,7 @@ VARIABLES = (
     Variable("contact_j", CONTACT, "i4", "1", "person it touches, or wall w as -1 - w", "samples.contact_j"),
     Variable("contact_slip", CONTACT, "f4", "m", "length of the tangential spring", "samples.contact_slip"),
 )
+BY_NAME = {variable.name: variable for variable in VARIABLES}
 GATHERED = tuple(variable for variable in VARIABLES if variable.pad is not None)
 
 PARAMETERS = {  # keywords of rooms: units and long_name of a coordinate
@@ -130,8 +136,18 @@ RANK = {"units": "1", "long_name": "rank in the order of leaving"}
 
 def run_key(scenario: Scenario) -> str:
     """What a run is found by: hash of its exact description, the schema and the engine (64 hex digits)."""
-    parts = (scenario.canonical(), str(SCHEMA_VERSION), FINGERPRINT)
+    return key_of(scenario.canonical())
+
+
+def key_of(canonical: str, schema: int | None = None, engine: str = "") -> str:
+    """The key of a run whose scenario has this canonical text; of this schema and engine if no others are named."""
+    parts = (canonical, str(schema or SCHEMA_VERSION), engine or FINGERPRINT)
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+
+
+def scenario_hash(canonical: str) -> str:
+    """What runs of one scenario share, whichever engine made them (64 hex digits)."""
+    return hashlib.sha256(canonical.encode()).hexdigest()
 
 
 WHOLE_STATE = {"vx", "vy", "spin", "contact_slip"}  # not recorded with places alone
@@ -148,6 +164,17 @@ def recorded(run: Run) -> tuple[Variable, ...]:
     if run.scenario.record.state == "whole":
         return tuple(have)
     return tuple(_rounded(v) if v.name in ("x", "y") else v for v in have if v.name not in WHOLE_STATE)
+
+
+def named(name: str, packed: bool = False) -> Variable:
+    """The variable of this name, as a file may hold it.
+
+    Raises
+    ------
+    KeyError
+        If the schema has none.
+    """
+    return _rounded(BY_NAME[name]) if packed else BY_NAME[name]
 
 
 def _rounded(place: Variable) -> Variable:

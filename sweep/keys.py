@@ -1,0 +1,78 @@
+"""Keys of the points of a grid, without building more scenarios than it takes to know them."""
+
+import hashlib
+import json
+from collections.abc import Iterator
+from contextlib import suppress
+from typing import NamedTuple
+
+from sweep import schema
+from sweep.errors import CannotWrite
+from sweep.grid import SEED, Grid, Point
+from sweep.store import Store
+
+FILE = "keys.json"
+
+
+class Wanted(NamedTuple):
+    """What a store is asked for: a run."""
+
+    key: str
+    scenario: str  # hash of the scenario, whatever the engine
+
+
+def keys_of(grid: Grid, store: Store | None = None) -> list[Wanted]:
+    """Keys of all points, in their order; kept in the store, if one is given, until grid, schema or engine change."""
+    if store is None or not grid.seeds_alone:  # rooms of one's own may be edited, which no fingerprint tells
+        return list(map(_wanted, _canonical(grid)))
+    mark = key_mark(grid)
+    kept = _kept(store, mark, len(grid))
+    if kept is None:
+        kept = list(map(_wanted, _canonical(grid)))
+        with suppress(CannotWrite):  # a store that cannot be written to is asked more slowly
+            store.note(FILE, json.dumps({"mark": mark, "digest": _digest(kept), "keys": kept}))
+    return kept
+
+
+def key_mark(grid: Grid) -> str:
+    """Hash of what decides about the keys of a grid."""
+    return schema.key_of(grid.to_json())
+
+
+def _wanted(canonical: str) -> Wanted:
+    return Wanted(schema.key_of(canonical), schema.scenario_hash(canonical))
+
+
+def _canonical(grid: Grid) -> Iterator[str]:
+    """Canonical texts; where the seed decides nothing else, a cell's scenario is built once."""
+    if not grid.seeds_alone:
+        yield from (grid.scenario(point).canonical() for point in grid.points())
+        return
+    cells: dict[tuple[object, ...], tuple[str, str]] = {}
+    for point in grid.points():
+        cell = tuple(value for name, value in point.items() if name != SEED)
+        if cell not in cells:
+            cells[cell] = _around_seed(grid, point)
+        before, after = cells[cell]
+        yield f"{before}{grid.seed_of(point)}{after}"
+
+
+def _around_seed(grid: Grid, point: Point) -> tuple[str, str]:
+    """What stands before and after the seed in the canonical text of a cell's runs."""
+    scenario = grid.scenario(point)
+    before, found, after = scenario.canonical().partition(f'"{SEED}":{scenario.seed},')
+    assert found, "the canonical text of a scenario names its seed"
+    return f'{before}"{SEED}":', f",{after}"
+
+
+def _kept(store: Store, mark: str, number: int) -> list[Wanted] | None:
+    try:
+        kept = json.loads((store.path / FILE).read_text("utf-8"))
+        keys = [Wanted(*pair) for pair in kept["keys"]] if kept["mark"] == mark else []
+        return keys if len(keys) == number and kept["digest"] == _digest(keys) else None
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
+def _digest(keys: list[Wanted]) -> str:
+    return hashlib.sha256("".join(map("".join, keys)).encode()).hexdigest()
