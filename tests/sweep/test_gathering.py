@@ -1,5 +1,6 @@
 """The gathered dataset."""
 
+import errno
 from pathlib import Path
 
 import numpy as np
@@ -86,6 +87,36 @@ def test_axes_of_words_and_of_truth_values_survive_the_file(store: Path) -> None
 def test_opening_gives_what_the_sweep_returned(grid: Grid, store: Path) -> None:
     ds = sweep(grid, store, jobs=1)
     xr.testing.assert_identical(open_results(store), ds)
+
+
+def test_results_may_stay_on_disk_until_they_are_needed(grid: Grid, store: Path) -> None:
+    pytest.importorskip("dask")
+    ds = sweep(grid, store, jobs=1)
+    with open_results(store, chunks={}) as lazy:
+        assert lazy.exit_time.chunks is not None
+        xr.testing.assert_identical(lazy.compute(), ds)
+
+
+def test_chunks_without_dask_are_one_line(grid: Grid, store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    sweep(grid, store, jobs=1)
+    monkeypatch.setattr("sweep.results.find_spec", lambda name: None)
+    with pytest.raises(BadInput, match=r"take dask, which is not installed: pip install 'jamsweep\[dask\]'"):
+        open_results(store, chunks={"seed": 1})
+    assert open_results(store).sizes["seed"] == 3
+
+
+def test_a_store_that_takes_no_more_still_gives_its_dataset(
+    grid: Grid, store: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
+) -> None:
+    ds = sweep(grid, store, jobs=1)
+    (store / "dataset.nc").unlink()
+
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("sweep.results.replace_durably", full)
+    xr.testing.assert_identical(gather(grid, store), ds)
+    assert "is not kept in" in capsys.readouterr().err
 
 
 def test_another_grid_over_the_same_store_is_gathered_anew(grid: Grid, store: Path) -> None:

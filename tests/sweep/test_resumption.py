@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 from engine import BadInput
-from sweep import DamagedFile, Grid, Store, gather, sweep
+from sweep import Grid, Store, gather, sweep
 from sweep.schema import run_key
 from tests.sweep.tiny import TINY, run_files
 
@@ -94,17 +94,43 @@ def with_another_key(path: Path) -> None:
 
 
 @pytest.mark.parametrize("spoil", [emptied, without_end_mark, with_another_key])
-def test_a_spoilt_file_is_not_gathered(grid: Grid, store: Path, spoil: Callable[[Path], None]) -> None:
-    sweep(grid, store, jobs=1)
+def test_a_spoilt_file_is_set_aside_at_gather_and_run_again(
+    grid: Grid, store: Path, spoil: Callable[[Path], None], capsys: pytest.CaptureFixture
+) -> None:
+    whole = sweep(grid, store, jobs=1)
+    files = run_files(store)
     (store / "dataset.nc").unlink()
     victim = store / "runs" / f"{manifest(store)[0]}.nc"
-    size = victim.stat().st_size
     spoil(victim)
-    assert victim.stat().st_size == size, "the manifest would have told"
-    with pytest.raises(DamagedFile, match="is damaged: delete it"):
-        gather(grid, store)
-    victim.unlink()
-    assert (sweep(grid, store, jobs=1).outcome > 0).all()
+    assert victim.stat().st_size == len(files[victim.name]), "the manifest would have told"
+    spoilt = victim.read_bytes()
+    assert int((gather(grid, store).outcome == 0).sum()) == 1
+    said = capsys.readouterr().err
+    assert f"run file '{victim}' is damaged" in said
+    assert "a sweep runs it again" in said
+    assert victim.with_name(f"{victim.name}.corrupt").read_bytes() == spoilt
+    xr.testing.assert_identical(sweep(grid, store, jobs=1), whole)
+    assert run_files(store) == files
+
+
+def test_damage_that_a_sweep_meets_is_mended_by_the_same_sweep(
+    grid: Grid, store: Path, capsys: pytest.CaptureFixture
+) -> None:
+    whole = sweep(grid, store, jobs=1)
+    (store / "dataset.nc").unlink()
+    emptied(store / "runs" / f"{manifest(store)[3]}.nc")
+    capsys.readouterr()
+    xr.testing.assert_identical(sweep(grid, store, jobs=1), whole)
+    assert "6 runs: 5 done, 1 to do" in capsys.readouterr().err
+
+
+def test_a_file_of_another_size_is_set_aside_and_said(grid: Grid, store: Path, capsys: pytest.CaptureFixture) -> None:
+    whole = sweep(grid, store, jobs=1)
+    victim = store / "runs" / f"{manifest(store)[1]}.nc"
+    victim.write_bytes(victim.read_bytes()[:-7])
+    xr.testing.assert_identical(sweep(grid, store, jobs=1), whole)
+    assert "1 run file is damaged" in capsys.readouterr().err
+    assert victim.with_name(f"{victim.name}.corrupt").is_file()
 
 
 def test_the_manifest_holds_what_differs_between_machines(grid: Grid, store: Path) -> None:
