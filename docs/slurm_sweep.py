@@ -10,8 +10,8 @@ from pathlib import Path
 from dask_jobqueue import SLURMCluster
 
 from sweep import sweep
-from sweep.attached import PINNED
 from sweep.gridfile import read_gridfile
+from sweep.running.attached import PINNED
 
 WORKERS = 4  # of a job, one core each
 JOB = {

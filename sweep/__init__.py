@@ -6,17 +6,17 @@ grid = Grid(rooms.lin_room, v_d=[0.6, 1.0], N=[100, 200], seed=range(10))
 ds = sweep(grid, store="results/mine")
 """
 
-from sweep.compact import compact
 from sweep.errors import CannotWrite, DamagedFile, SweepStopped
 from sweep.gather import gather
 from sweep.grid import Grid
-from sweep.reading import read_run
 from sweep.results import open_results
-from sweep.runfile import to_dataset, write_run
 from sweep.runner import sweep
-from sweep.store import Store
+from sweep.storage.compact import compact
+from sweep.storage.reading import read_run
+from sweep.storage.runfile import to_dataset, write_run
+from sweep.storage.store import Store
+from sweep.storage.verify import verify
 from sweep.until import Until, sweep_until
-from sweep.verify import verify
 
 __all__ = [
     "CannotWrite",

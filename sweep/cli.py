@@ -15,13 +15,13 @@ import xarray as xr
 from engine import FINGERPRINT, OUTCOMES, BadInput
 from engine.errors import require
 from sweep import runner
-from sweep.backends import BACKENDS, DASK, LOKY
 from sweep.errors import DamagedFile, SweepStopped
 from sweep.gridfile import read_gridfile, read_until
 from sweep.report import tell
 from sweep.run_command import run
+from sweep.running.backends import BACKENDS, DASK, LOKY
 from sweep.status import status_of
-from sweep.store import Store
+from sweep.storage.store import Store
 from sweep.store_commands import code_option, compact, gather, say, status, verify
 from sweep.until import account, sweep_until
 

@@ -12,14 +12,14 @@ import xarray as xr
 from engine import FINGERPRINT
 from sweep import schema
 from sweep.errors import DamagedFile
-from sweep.facts import Facts, Source
 from sweep.grid import Grid
-from sweep.keys import Wanted, keys_of
 from sweep.report import tell
 from sweep.results import CONTENT, is_made_of, keep_results, open_results
 from sweep.schema import GATHERED, Variable
-from sweep.serving import RERUN, Serving, serving
-from sweep.store import Store
+from sweep.storage.facts import Facts, Source
+from sweep.storage.keys import Wanted, keys_of
+from sweep.storage.serving import RERUN, Serving, serving
+from sweep.storage.store import Store
 
 COMMON = (
     "Common random numbers: the same seed means the same places and bodies, whatever the values of the other "

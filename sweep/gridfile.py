@@ -27,7 +27,7 @@ import numpy as np
 from engine import BadInput
 from engine.errors import require
 from sweep.grid import CHOICE, Grid
-from sweep.serving import ON_CODE_CHANGE, RERUN
+from sweep.storage.serving import ON_CODE_CHANGE, RERUN
 
 PARTS = ("room", "store", "on_code_change", CHOICE, "axes", "constants", "until")
 SPAN = ("first", "last", "step")

@@ -8,9 +8,9 @@ from typing import Any
 import xarray as xr
 
 from engine.errors import require
-from sweep.durable import replace_durably, sha256_of
 from sweep.errors import DamagedFile
-from sweep.store import Store
+from sweep.storage.durable import replace_durably, sha256_of
+from sweep.storage.store import Store
 
 CONTENT = "content"  # attribute: hash of what the dataset was made of
 

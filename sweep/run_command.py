@@ -10,10 +10,10 @@ import click
 from engine import Scenario, simulate
 from engine.errors import require
 from engine.rooms import ROOMS
-from sweep.durable import require_writable
 from sweep.grid import Room, plain_kind
-from sweep.runfile import write_run
 from sweep.schema import PARAMETERS
+from sweep.storage.durable import require_writable
+from sweep.storage.runfile import write_run
 
 
 class Rooms(click.Group):

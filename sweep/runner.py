@@ -5,16 +5,16 @@ from pathlib import Path
 import xarray as xr
 
 from engine.errors import require
-from sweep.backends import chosen
 from sweep.errors import DamagedFile
-from sweep.execution import Execution, Manner
 from sweep.gather import collect
 from sweep.grid import Grid
-from sweep.limits import limits_of
-from sweep.plan import Plan, durations_of, longest_first, not_held_back, plan_of
 from sweep.report import tell
-from sweep.serving import RERUN
-from sweep.store import Store
+from sweep.running.backends import chosen
+from sweep.running.execution import Execution, Manner
+from sweep.running.limits import limits_of
+from sweep.running.plan import Plan, durations_of, longest_first, not_held_back, plan_of
+from sweep.storage.serving import RERUN
+from sweep.storage.store import Store
 
 ATTEMPTS = 3  # at a sweep whose files are damaged as soon as they are written
 

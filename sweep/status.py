@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 
 from sweep.grid import SEED, Grid, Point, Scalar, named
-from sweep.keys import Wanted, keys_of
-from sweep.manifest import Entry
-from sweep.serving import RERUN, Serving, serving
-from sweep.store import CORRUPT, Store, sizes_in
+from sweep.storage.keys import Wanted, keys_of
+from sweep.storage.manifest import Entry
+from sweep.storage.serving import RERUN, Serving, serving
+from sweep.storage.store import CORRUPT, Store, sizes_in
 
 DONE = "done"
 REASONS = {  # state -> why a run of it is not done; the first that holds is given

@@ -8,12 +8,12 @@ import click
 
 from engine import BadInput
 from engine.errors import require
-from sweep.durable import require_writable
 from sweep.errors import DamagedFile
 from sweep.grid import Grid
-from sweep.serving import ON_CODE_CHANGE, RERUN
 from sweep.status import DONE, Status, status_of
-from sweep.store import CORRUPT, Store, sizes_in
+from sweep.storage.durable import require_writable
+from sweep.storage.serving import ON_CODE_CHANGE, RERUN
+from sweep.storage.store import CORRUPT, Store, sizes_in
 
 FAILED = 1  # exit code
 store_argument = click.argument("store", type=click.Path(path_type=Path))
@@ -98,7 +98,7 @@ def verify(store: Path, repair: bool) -> None:
 
     Exit code 1 if there is anything that is not repaired.
     """  # noqa: D301  click reads \b as a character
-    from sweep.verify import verify as verified
+    from sweep.storage.verify import verify as verified
 
     kept = Store(store)
     require(kept.path.is_dir(), "store", f"'{kept.path}'", "does not exist", "name the folder of a sweep")
@@ -119,7 +119,7 @@ def compact(store: Path) -> None:
     \b
     jamsweep compact results/mine
     """  # noqa: D301  click reads \b as a character
-    from sweep.compact import compact as compacted
+    from sweep.storage.compact import compact as compacted
 
     done = compacted(store)
     sizes = f"{done.before / 1e6:.1f} MB became {done.after / 1e6:.1f} MB"

@@ -16,7 +16,7 @@ from sweep.grid import Grid, Point, Scalar, named
 from sweep.report import tell
 from sweep.runner import sweep
 from sweep.schema import GATHERED
-from sweep.store import Store
+from sweep.storage.store import Store
 
 SEED = "seed"
 RULES = "studies.until.rules"  # looked up by name at run time, as studies are: nothing here builds on it

@@ -13,8 +13,8 @@ from engine.errors import require
 from studies import measures
 from studies.published import parisi2005 as paper
 from sweep import Grid, Store, SweepStopped, read_run, sweep
-from sweep.durable import replace_durably
 from sweep.schema import PARAMETERS, run_key
+from sweep.storage.durable import replace_durably
 
 FOLDER = Path("results/parisi")
 EVERY = 0.02  # s, sampling interval of the contacts

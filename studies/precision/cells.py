@@ -14,7 +14,7 @@ from studies.precision.settings import PAPER, Setting, setting_of
 from sweep import Grid, sweep
 from sweep.grid import Scalar
 from sweep.schema import run_key
-from sweep.store import Store
+from sweep.storage.store import Store
 
 DEFAULT = "default"
 

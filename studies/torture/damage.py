@@ -10,8 +10,8 @@ from pathlib import Path
 import xarray as xr
 
 from sweep import Grid, Store, gather, sweep
-from sweep.compact import compact
-from sweep.verify import identified, verify
+from sweep.storage.compact import compact
+from sweep.storage.verify import identified, verify
 
 GRID = Grid("lin_room", v_d=[1.0, 1.4], seed=range(2), N=12, size=4.0, time_limit=4.0, every=0.5, contacts=True)
 TRUNCATIONS, FLIPS = 50, 200

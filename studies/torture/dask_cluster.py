@@ -12,7 +12,7 @@ import xarray as xr
 from distributed import Client
 
 from sweep import Grid, Store, sweep
-from sweep.cluster import own_cluster
+from sweep.running.cluster import own_cluster
 
 CONSTANTS = {"N": 8, "size": 4.0, "accuracy": "0.1mm", "time_limit": 8.0}  # tenths of a second a run
 

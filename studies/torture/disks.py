@@ -11,7 +11,7 @@ from pathlib import Path
 import xarray as xr
 
 from sweep import Grid, Store, sweep
-from sweep.verify import verify
+from sweep.storage.verify import verify
 
 ROOM = {"N": 12, "size": 4.0, "time_limit": 4.0}
 FULL_AT, QUICK_FULL_AT = 40, 3  # sizes of the disk that are tried

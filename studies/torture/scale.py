@@ -18,10 +18,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from engine import simulate
-from sweep import Grid, Store, durable
-from sweep.execution import Execution, Manner
-from sweep.limits import Limits
-from sweep.plan import durations_of, plan_of
+from sweep import Grid, Store
+from sweep.running.execution import Execution, Manner
+from sweep.running.limits import Limits
+from sweep.running.plan import durations_of, plan_of
+from sweep.storage import durable
 
 FOLDER = Path("results/torture")  # on a disk: /tmp may be memory
 LONGEST = 0.020  # s, the cost of a run with durable write

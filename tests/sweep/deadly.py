@@ -1,4 +1,4 @@
-"""Work that goes wrong in the ways in which workers die; what a slot's worker runs in place of `sweep.worker.work`."""
+"""Work that goes wrong in the ways in which workers die; run in place of `sweep.running.worker.work`."""
 
 import ctypes
 import os
@@ -10,8 +10,8 @@ import numba
 import numpy as np
 
 from engine import Scenario
-from sweep import worker
-from sweep.worker import Result
+from sweep.running import worker
+from sweep.running.worker import Result
 
 
 def killed(scenario: Scenario, store: str, key: str) -> Result:

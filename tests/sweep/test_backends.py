@@ -13,7 +13,8 @@ import pytest
 import xarray as xr
 
 from engine import BadInput
-from sweep import Grid, Store, cluster, sweep
+from sweep import Grid, Store, sweep
+from sweep.running import cluster
 from tests.sweep.tiny import TINY, run_files
 
 

@@ -10,7 +10,7 @@ import xarray as xr
 from engine import BadInput
 from sweep import Grid, Store, SweepStopped, gather, schema, sweep
 from sweep.cli import main
-from sweep.compact import compact
+from sweep.storage.compact import compact
 from tests.sweep.tiny import TINY
 
 OLD = "0123456789abcdef"
@@ -26,7 +26,7 @@ def jamsweep(*arguments: object) -> int:
 def old(grid: Grid, store: Path) -> Store:
     """A store with four of six runs, made by another engine."""
     with pytest.MonkeyPatch.context() as patch:
-        for module in ("schema", "store", "serving", "gather"):
+        for module in ("schema", "storage.store", "storage.serving", "gather"):
             patch.setattr(importlib.import_module(f"sweep.{module}"), "FINGERPRINT", OLD)
         sweep(Grid("lin_room", v_d=[1.0, 1.4], seed=range(2), **TINY), store, jobs=1, progress=False)
     return Store(store)

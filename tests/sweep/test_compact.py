@@ -12,10 +12,11 @@ import pytest
 import xarray as xr
 
 from engine import BadInput
-from sweep import Grid, Store, gather, open_results, read_run, shard, sweep
+from sweep import Grid, Store, gather, open_results, read_run, sweep
 from sweep.cli import main
-from sweep.compact import compact
-from sweep.verify import verify
+from sweep.storage import shard
+from sweep.storage.compact import compact
+from sweep.storage.verify import verify
 from tests.sweep.tiny import TINY, run_files
 
 GRID = Grid("lin_room", every=[0.0, 0.5], state=["whole", "places"], seed=range(2), **TINY)
@@ -89,7 +90,10 @@ def test_a_damaged_run_is_not_folded(store: Store, capsys: pytest.CaptureFixture
 
 
 def test_a_compaction_that_is_killed_at_any_moment_loses_nothing(store: Store) -> None:
-    ds, command = open_results(store.path), "from sweep.compact import compact; import sys; compact(sys.argv[1], 1)"
+    ds, command = (
+        open_results(store.path),
+        "from sweep.storage.compact import compact; import sys; compact(sys.argv[1], 1)",
+    )
     for moment in range(40):
         process = subprocess.Popen([sys.executable, "-c", _stopping_at(moment) + command, str(store.path)])
         code = process.wait()
@@ -125,7 +129,7 @@ os.replace, os.fsync, os.unlink = killing(os.replace), killing(os.fsync), killin
 
 
 def test_two_compactions_do_not_meet(store: Store) -> None:
-    hold = "import sys, time\nfrom sweep.durable import locked\nfrom pathlib import Path\n"
+    hold = "import sys, time\nfrom sweep.storage.durable import locked\nfrom pathlib import Path\n"
     hold += "with locked(Path(sys.argv[1])):\n    print('held', flush=True)\n    time.sleep(600)"
     holder = subprocess.Popen([sys.executable, "-c", hold, str(store.lock)], stdout=subprocess.PIPE, text=True)
     try:

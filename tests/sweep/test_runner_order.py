@@ -8,12 +8,13 @@ import pytest
 
 from engine import BadInput, rooms, simulate
 from engine.scenario import Scenario
-from sweep import Grid, Store, SweepStopped, read_run, sweep, worker
+from sweep import Grid, Store, SweepStopped, read_run, sweep
 from sweep.cli import main
-from sweep.estimate import Durations
-from sweep.limits import Limits, limits_of
-from sweep.notes import command, held_back
-from sweep.plan import durations_of, longest_first, plan_of
+from sweep.running import worker
+from sweep.running.estimate import Durations
+from sweep.running.limits import Limits, limits_of
+from sweep.running.notes import command, held_back
+from sweep.running.plan import durations_of, longest_first, plan_of
 from sweep.schema import run_key
 from tests.sweep.tiny import TINY
 

@@ -7,10 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from sweep import Grid, Store, keys, schema, sweep
+from sweep import Grid, Store, schema, sweep
 from sweep.cli import main
-from sweep.keys import keys_of
 from sweep.status import STATES, status_of
+from sweep.storage import keys
+from sweep.storage.keys import keys_of
 from tests.sweep.tiny import TINY
 
 

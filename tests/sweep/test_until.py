@@ -7,7 +7,7 @@ import xarray as xr
 from engine import BadInput
 from sweep import Grid, Until, gather, sweep, sweep_until
 from sweep.cli import main
-from sweep.store import Store
+from sweep.storage.store import Store
 from sweep.until import account
 from tests.sweep.tiny import TINY, run_files
 

@@ -15,9 +15,9 @@ from engine import BadInput
 from studies.torture import damage
 from sweep import DamagedFile, Grid, Store, gather, open_results, read_run, sweep
 from sweep.cli import main
-from sweep.compact import compact
-from sweep.durable import replace_durably
-from sweep.verify import verify
+from sweep.storage.compact import compact
+from sweep.storage.durable import replace_durably
+from sweep.storage.verify import verify
 from tests.sweep.tiny import TINY, run_files
 
 GRID = Grid("lin_room", v_d=[1.0, 1.4], seed=range(2), **TINY)

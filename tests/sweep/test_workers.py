@@ -8,9 +8,10 @@ import pytest
 import xarray as xr
 
 from engine import rooms
-from sweep import Grid, Store, SweepStopped, sweep, worker
+from sweep import Grid, Store, SweepStopped, sweep
+from sweep.running import worker
+from sweep.running.worker import Done, Failed, Outdated, work
 from sweep.schema import run_key
-from sweep.worker import Done, Failed, Outdated, work
 from tests.sweep.tiny import TINY, run_files
 
 CROWDED = {"size": 2.2, "time_limit": 0.5}  # ten persons cover 59 % of it: not to be placed at random

@@ -134,7 +134,7 @@ def test_a_worker_in_a_compiled_loop_notices_that_its_parent_is_gone(platform: s
     """On Linux the kernel ends it; elsewhere, as if here, a thread of its own does."""
     child = (
         "import os, sys\n"
-        "from sweep.attached import end_with\n"
+        "from sweep.running.attached import end_with\n"
         "from engine import rooms, simulate\n"
         f"sys.platform = '{platform}'; end_with(os.getppid())\n"
         "print(os.getpid(), flush=True)\n"

@@ -9,12 +9,13 @@ import pytest
 import xarray as xr
 
 from engine import BadInput, rooms
-from sweep import Grid, Store, SweepStopped, slot, sweep
-from sweep.attached import PINNED
-from sweep.limits import Limits
+from sweep import Grid, Store, SweepStopped, sweep
+from sweep.running import slot
+from sweep.running.attached import PINNED
+from sweep.running.limits import Limits
+from sweep.running.slot import Job, Slot
+from sweep.running.worker import Done, Failed, Result, work
 from sweep.schema import run_key
-from sweep.slot import Job, Slot
-from sweep.worker import Done, Failed, Result, work
 from tests.sweep import deadly
 from tests.sweep.tiny import TINY, run_files
 

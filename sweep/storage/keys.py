@@ -9,7 +9,7 @@ from typing import NamedTuple
 from sweep import schema
 from sweep.errors import CannotWrite
 from sweep.grid import SEED, Grid, Point
-from sweep.store import Store
+from sweep.storage.store import Store
 
 FILE = "keys.json"
 

@@ -23,11 +23,11 @@ from joblib.externals.loky.process_executor import BrokenProcessPool
 
 from engine import BadInput, Scenario
 from engine.errors import require
-from sweep.attached import ASK, PINNED, attach, ctrl_c_left_alone
 from sweep.errors import SweepStopped
-from sweep.limits import Limits, megabytes
-from sweep.store import Store
-from sweep.worker import Done, Failed, Kind, Result, failed, kind_of, prepare, work
+from sweep.running.attached import ASK, PINNED, attach, ctrl_c_left_alone
+from sweep.running.limits import Limits, megabytes
+from sweep.running.worker import Done, Failed, Kind, Result, failed, kind_of, prepare, work
+from sweep.storage.store import Store
 
 LIVES = 2  # workers that one run may cost
 STARTS = 5  # attempts to start a worker, in a row

@@ -7,13 +7,13 @@ from pathlib import Path
 import netCDF4
 import numpy as np
 
-from sweep import shard
-from sweep.durable import sha256_of
 from sweep.errors import DamagedFile
-from sweep.manifest import Entry
 from sweep.report import tell
 from sweep.schema import GATHERED
-from sweep.store import Store
+from sweep.storage import shard
+from sweep.storage.durable import sha256_of
+from sweep.storage.manifest import Entry
+from sweep.storage.store import Store
 
 Facts = dict[str, np.ndarray]
 NAMES = [variable.name for variable in GATHERED]

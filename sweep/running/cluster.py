@@ -18,12 +18,12 @@ from typing import Any, Self
 
 from engine import BadInput
 from engine.errors import require
-from sweep.attached import PINNED, ctrl_c_left_alone
 from sweep.errors import SweepStopped
 from sweep.report import late_word
-from sweep.slot import ASIDE, LIVES, Job, run_in_own_slot
-from sweep.store import Store
-from sweep.worker import Failed, Result
+from sweep.running.attached import PINNED, ctrl_c_left_alone
+from sweep.running.slot import ASIDE, LIVES, Job, run_in_own_slot
+from sweep.running.worker import Failed, Result
+from sweep.storage.store import Store
 
 LOOK = 2.0  # s between two looks how many workers there are
 CONNECTING = "10s"

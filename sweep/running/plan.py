@@ -3,15 +3,15 @@
 from typing import NamedTuple
 
 from engine import Scenario
-from sweep.estimate import Durations
 from sweep.grid import Grid, Point
-from sweep.keys import keys_of
-from sweep.limits import Limits
-from sweep.notes import held_back
 from sweep.report import tell
-from sweep.serving import RERUN, changed, serving
-from sweep.store import Store
-from sweep.worker import Kind, kind_of
+from sweep.running.estimate import Durations
+from sweep.running.limits import Limits
+from sweep.running.notes import held_back
+from sweep.running.worker import Kind, kind_of
+from sweep.storage.keys import keys_of
+from sweep.storage.serving import RERUN, changed, serving
+from sweep.storage.store import Store
 
 NOTHING: Kind = ()  # of a run that is done
 
@@ -58,7 +58,7 @@ def plan_of(grid: Grid, store: Store, on_code_change: str = RERUN) -> Plan:
 
 
 def not_held_back(tasks: list[Task], store: Store, limits: Limits) -> list[Task]:
-    """The tasks that a sweep takes up without being asked for them; see `sweep.notes.held_back`."""
+    """The tasks that a sweep takes up without being asked for them; see `sweep.running.notes.held_back`."""
     return [task for task in tasks if not held_back(store, task.key, limits)]
 
 

@@ -9,8 +9,8 @@ import xarray as xr
 
 from engine import Run
 from sweep import schema
-from sweep.durable import replace_durably
 from sweep.schema import Variable
+from sweep.storage.durable import replace_durably
 
 TOGETHER = 8  # persons in one chunk of a file
 

@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 from engine import Scenario
-from sweep import shard
-from sweep.durable import is_dead, owner_of, sha256_of
 from sweep.grid import Grid
-from sweep.manifest import Entry, Folded
-from sweep.runfile import read_stored, write_stored
 from sweep.schema import SCHEMA_VERSION, key_of, scenario_hash
-from sweep.store import CORRUPT, KEY, Store, sizes_in
+from sweep.storage import shard
+from sweep.storage.durable import is_dead, owner_of, sha256_of
+from sweep.storage.manifest import Entry, Folded
+from sweep.storage.runfile import read_stored, write_stored
+from sweep.storage.store import CORRUPT, KEY, Store, sizes_in
 
 RERUN = "--repair sets it aside, then sweep again"
 READOPT = "--repair enters it again"

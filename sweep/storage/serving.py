@@ -12,10 +12,10 @@ import netCDF4
 from engine import FINGERPRINT, Scenario
 from engine.errors import require
 from sweep.errors import SweepStopped
-from sweep.keys import Wanted
-from sweep.manifest import Entry
 from sweep.schema import SCHEMA_VERSION, scenario_hash
-from sweep.store import Store
+from sweep.storage.keys import Wanted
+from sweep.storage.manifest import Entry
+from sweep.storage.store import Store
 
 ERROR, RERUN, ACCEPT = "error", "rerun", "accept"
 ON_CODE_CHANGE = (ERROR, RERUN, ACCEPT)

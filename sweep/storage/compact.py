@@ -8,13 +8,13 @@ from typing import NamedTuple
 import numpy as np
 
 from engine.errors import require
-from sweep import shard
-from sweep.durable import locked, replace_durably, sha256_of
 from sweep.errors import DamagedFile, SweepStopped
-from sweep.manifest import Entry, Folded
 from sweep.report import tell
-from sweep.runfile import Stored, read_stored
-from sweep.store import Store
+from sweep.storage import shard
+from sweep.storage.durable import locked, replace_durably, sha256_of
+from sweep.storage.manifest import Entry, Folded
+from sweep.storage.runfile import Stored, read_stored
+from sweep.storage.store import Store
 
 MOST_RUNS, MOST_BYTES = 1000, 2**28  # of one shard: what memory holds a few times over
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from engine import Record, Scenario, simulate
 from sweep.schema import run_key
-from sweep.store import Store
+from sweep.storage.store import Store
 
 
 @dataclass(frozen=True)

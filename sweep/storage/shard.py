@@ -16,11 +16,11 @@ import netCDF4
 import numpy as np
 
 from sweep import schema
-from sweep.durable import sha256_of
 from sweep.errors import DamagedFile
-from sweep.manifest import Entry, Folded
-from sweep.runfile import Stored, write_stored
 from sweep.schema import Variable
+from sweep.storage.durable import sha256_of
+from sweep.storage.manifest import Entry, Folded
+from sweep.storage.runfile import Stored, write_stored
 
 KIND = "shard of runs, layout 1"
 CHUNK = 2**18  # values; damage or a single run's reading costs one of these

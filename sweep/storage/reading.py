@@ -6,10 +6,10 @@ from pathlib import Path
 import xarray as xr
 
 from engine.errors import require
-from sweep import shard
 from sweep.errors import DamagedFile
-from sweep.runfile import open_run
-from sweep.store import Store, holding
+from sweep.storage import shard
+from sweep.storage.runfile import open_run
+from sweep.storage.store import Store, holding
 
 
 def read_run(path: Path | str) -> xr.Dataset:

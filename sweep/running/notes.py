@@ -10,10 +10,10 @@ import re
 import shlex
 
 from sweep.grid import Grid, Point, named
-from sweep.limits import Limits
-from sweep.slot import ASIDE, LATE
-from sweep.store import Store
-from sweep.worker import Failed
+from sweep.running.limits import Limits
+from sweep.running.slot import ASIDE, LATE
+from sweep.running.worker import Failed
+from sweep.storage.store import Store
 
 
 def note_of(failure: Failed, grid: Grid, point: Point) -> str:

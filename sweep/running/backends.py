@@ -6,9 +6,9 @@ from queue import SimpleQueue
 from typing import Protocol, Self
 
 from engine.errors import require
-from sweep.limits import Limits
-from sweep.slot import Job, Slot
-from sweep.worker import Result, work
+from sweep.running.limits import Limits
+from sweep.running.slot import Job, Slot
+from sweep.running.worker import Result, work
 
 SERIAL, LOKY, DASK = BACKENDS = ("serial", "loky", "dask")
 PATIENCE = 0.2  # s between two looks whether no more runs shall begin, or more workers have come

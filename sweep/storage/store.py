@@ -11,12 +11,12 @@ from pathlib import Path
 
 from engine import FINGERPRINT, Run
 from engine.errors import require
-from sweep import shard
-from sweep.durable import is_dead, owner_of, refuse, replace_durably, require_writable, sha256_of
 from sweep.errors import CannotWrite, DamagedFile
-from sweep.manifest import Entry, Manifest
-from sweep.runfile import write_run
 from sweep.schema import SCHEMA_VERSION, run_key, scenario_hash
+from sweep.storage import shard
+from sweep.storage.durable import is_dead, owner_of, refuse, replace_durably, require_writable, sha256_of
+from sweep.storage.manifest import Entry, Manifest
+from sweep.storage.runfile import write_run
 
 LAYOUT = 1  # of the folder
 MARKS = ("store.json", "manifest.jsonl", "grid.json")

@@ -5,20 +5,20 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import closing
 from typing import NamedTuple
 
-from sweep.backends import DASK, LOKY, SERIAL, Backend, Loky, Serial, results
-from sweep.cluster import Dask
 from sweep.errors import SweepStopped
-from sweep.estimate import Durations
 from sweep.grid import Grid, named
-from sweep.interruption import two_stages
-from sweep.limits import Limits
-from sweep.notes import command, note_of
-from sweep.plan import Task
 from sweep.report import late_word, tell
 from sweep.report import progress as progress_of
-from sweep.slot import Job
-from sweep.store import Store
-from sweep.worker import Done, Outdated, Result, prepare
+from sweep.running.backends import DASK, LOKY, SERIAL, Backend, Loky, Serial, results
+from sweep.running.cluster import Dask
+from sweep.running.estimate import Durations
+from sweep.running.interruption import two_stages
+from sweep.running.limits import Limits
+from sweep.running.notes import command, note_of
+from sweep.running.plan import Task
+from sweep.running.slot import Job
+from sweep.running.worker import Done, Outdated, Result, prepare
+from sweep.storage.store import Store
 
 PATIENCE = 2.0  # s without a word
 

@@ -11,7 +11,7 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from sweep.durable import append_line, rewrite_lines
+from sweep.storage.durable import append_line, rewrite_lines
 
 
 @dataclass(frozen=True, slots=True)
