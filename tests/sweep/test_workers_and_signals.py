@@ -56,7 +56,14 @@ def kept(folder: Path) -> int:
 
 def workers(process: subprocess.Popen) -> list[psutil.Process]:
     children = psutil.Process(process.pid).children(recursive=True)
-    return [child for child in children if "popen_loky" in " ".join(child.cmdline())]
+    return [child for child in children if "popen_loky" in " ".join(_command(child))]
+
+
+def _command(process: psutil.Process) -> list[str]:
+    try:
+        return process.cmdline()
+    except psutil.Error:  # it has ended
+        return []
 
 
 def said_until(process: subprocess.Popen, words: str) -> str:
