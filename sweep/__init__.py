@@ -6,17 +6,37 @@ grid = Grid(rooms.lin_room, v_d=[0.6, 1.0], N=[100, 200], seed=range(10))
 ds = sweep(grid, store="results/mine")
 """
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from sweep.errors import CannotWrite, DamagedFile, SweepStopped
-from sweep.gather import gather
 from sweep.grid import Grid
-from sweep.results import open_results
-from sweep.runner import sweep
-from sweep.storage.compact import compact
-from sweep.storage.reading import read_run
-from sweep.storage.runfile import to_dataset, write_run
 from sweep.storage.store import Store
-from sweep.storage.verify import verify
-from sweep.until import Until, sweep_until
+
+if TYPE_CHECKING:
+    from sweep.gathering import gather
+    from sweep.results import open_results
+    from sweep.runner import sweep
+    from sweep.storage.compact import compact
+    from sweep.storage.datasets import to_dataset
+    from sweep.storage.reading import read_run
+    from sweep.storage.runfile import write_run
+    from sweep.storage.verify import verify
+    from sweep.until import Until, sweep_until
+
+# What needs xarray is imported when it is first asked for, so that `jamsweep status` answers at once.
+_LATER = {
+    "Until": "sweep.until",
+    "compact": "sweep.storage.compact",
+    "gather": "sweep.gathering",
+    "open_results": "sweep.results",
+    "read_run": "sweep.storage.reading",
+    "sweep": "sweep.runner",
+    "sweep_until": "sweep.until",
+    "to_dataset": "sweep.storage.datasets",
+    "verify": "sweep.storage.verify",
+    "write_run": "sweep.storage.runfile",
+}
 
 __all__ = [
     "CannotWrite",
@@ -35,3 +55,12 @@ __all__ = [
     "verify",
     "write_run",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """A function that is kept in a module of its own."""
+    if name not in _LATER:
+        raise AttributeError(f"module 'sweep' has no attribute {name!r}")
+    found = getattr(import_module(_LATER[name]), name)
+    globals()[name] = found
+    return found

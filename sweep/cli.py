@@ -7,14 +7,12 @@ import sys
 from collections.abc import Sequence
 from importlib import metadata
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
-import xarray as xr
 
 from engine import FINGERPRINT, OUTCOMES, BadInput
 from engine.errors import require
-from sweep import runner
 from sweep.errors import DamagedFile, SweepStopped
 from sweep.gridfile import read_gridfile, read_until
 from sweep.report import tell
@@ -23,7 +21,9 @@ from sweep.running.backends import BACKENDS, DASK, LOKY
 from sweep.status import status_of
 from sweep.storage.store import Store
 from sweep.store_commands import code_option, compact, gather, say, status, verify
-from sweep.until import account, sweep_until
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130  # exit codes
 SETTINGS = {
@@ -31,6 +31,7 @@ SETTINGS = {
     "token_normalize_func": lambda word: word.replace("_", "-"),
 }
 STUDIES = "studies"
+RUNNER, UNTIL = "sweep.runner", "sweep.until"  # imported when they are needed, since that takes half a second
 EVERYTHING, FIGURE = "everything", r"(fig|table)\d+|hazard"  # modules of a paper of several studies
 PLAIN = "lin"  # the paper whose figures go without its name: fig10 is Lin's, fig1 of another paper parisi-fig1
 jobs_option = click.option("--jobs", type=int, default=2, show_default=True, help="Number of worker processes.")
@@ -128,16 +129,17 @@ def sweep(
         return
     manner["backend"] = backend or (DASK if manner["scheduler"] else LOKY)
     manner["on_code_change"] = choice
-    until = read_until(file)
-    if until is None:
-        _finish(runner.sweep(described.grid, kept, jobs, **manner), kept.dataset)
+    goals = read_until(file)
+    if goals is None:
+        _finish(importlib.import_module(RUNNER).sweep(described.grid, kept, jobs, **manner), kept.dataset)
         return
-    ds = sweep_until(described.grid, kept, until, jobs, **manner)
-    click.echo(account(ds))
+    until = importlib.import_module(UNTIL)
+    ds = until.sweep_until(described.grid, kept, goals, jobs, **manner)
+    click.echo(until.account(ds))
     _finish(ds, kept.dataset, meant=int((ds.seeds_given.max() - ds.seeds_given).sum()))
 
 
-def _finish(ds: xr.Dataset, path: Path, meant: int = 0) -> None:
+def _finish(ds: "xr.Dataset", path: Path, meant: int = 0) -> None:
     """Say how runs ended and where the dataset is; `meant`: runs that are missing because they were not asked for."""
     number = {word: int((ds.outcome == code).sum()) for code, word in enumerate(OUTCOMES)}
     number["missing"] -= meant

@@ -6,7 +6,7 @@ import xarray as xr
 
 from engine.errors import require
 from sweep.errors import DamagedFile
-from sweep.gather import collect
+from sweep.gathering import collect
 from sweep.grid import Grid
 from sweep.report import tell
 from sweep.running.backends import chosen

@@ -78,22 +78,22 @@ def status_of(grid: Grid, store: Store, on_code_change: str = RERUN) -> Status:
     """What a sweep would find done and to do; opens no run file."""
     wanted = keys_of(grid, store)
     points = {w.key: (point, w) for w, point in zip(wanted, grid.points(), strict=True)}
+    states = _States(store)  # first: what a sweep finishes meanwhile is then served, and not taken for corrupt
     served = serving(wanted, store, on_code_change)
-    state = _States(store, served)
-    runs = [Run(key, point, state.of(w)) for key, (point, w) in points.items()]
+    runs = [Run(key, point, states.of(w, served)) for key, (point, w) in points.items()]
     return Status(runs, _left(runs, served))
 
 
 class _States:
-    def __init__(self, store: Store, served: Serving) -> None:
-        self._served, self._files = served, sizes_in(store.runs)
-        self._failed, self._listed = sizes_in(store.failed), store.vouched.read().entries
+    def __init__(self, store: Store) -> None:
+        self._files, self._failed = sizes_in(store.runs), sizes_in(store.failed)
+        self._listed = store.vouched.read().entries
 
-    def of(self, run: Wanted) -> str:
+    def of(self, run: Wanted, served: Serving) -> str:
         file = f"{run.key}.nc"
         states = {
-            DONE: run.key in self._served.entries,
-            "stale": run.key in self._served.stale,
+            DONE: run.key in served.entries,
+            "stale": run.key in served.stale,
             "corrupt": file in self._files and run.key in self._listed,
             "unlisted": file in self._files,
             "set aside": file + CORRUPT in self._files,

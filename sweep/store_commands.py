@@ -73,7 +73,7 @@ def gather(store: Path, output: Path | None, on_code_change: str | None) -> None
     \b
     jamsweep gather results/mine -o mine.nc
     """  # noqa: D301  click reads \b as a character
-    from sweep.gather import collect  # xarray takes a second, which `status` need not wait for
+    from sweep.gathering import collect  # xarray takes a second, which `status` need not wait for
 
     if output:
         require_writable(output.absolute().parent, "output folder")

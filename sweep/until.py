@@ -11,7 +11,7 @@ import xarray as xr
 
 from engine import Scenario
 from engine.errors import BadInput, require
-from sweep.gather import gather
+from sweep.gathering import gather
 from sweep.grid import Grid, Point, Scalar, named
 from sweep.report import tell
 from sweep.runner import sweep

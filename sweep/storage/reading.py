@@ -8,7 +8,7 @@ import xarray as xr
 from engine.errors import require
 from sweep.errors import DamagedFile
 from sweep.storage import shard
-from sweep.storage.runfile import open_run
+from sweep.storage.datasets import open_run
 from sweep.storage.store import Store, holding
 
 

@@ -1,11 +1,10 @@
-"""One run, as a file and as a dataset."""
+"""One run as a file."""
 
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import netCDF4
 import numpy as np
-import xarray as xr
 
 from engine import Run
 from sweep import schema
@@ -30,29 +29,8 @@ def write_run(run: Run, path: Path | str) -> None:
     replace_durably(Path(path), lambda temporary: write_stored(stored(run), temporary))
 
 
-def open_run(path: Path) -> xr.Dataset:
-    """What `to_dataset` makes of the run that a file holds."""
-    with xr.open_dataset(path, engine="netcdf4") as ds:
-        return _with_rank(ds.load().isel(run=0))
-
-
-def to_dataset(run: Run) -> xr.Dataset:
-    """A run as a dataset: the names, types and attributes of its file, without the dimension `run`.
-
-    Returns
-    -------
-    Dataset with dims `exit` (rank from 1, a coordinate), `person`, and where recorded `sample` and `contact`
-    """
-    variables = {v.name: (v.dims, schema.fact(run, v), _attributes(v)) for v in schema.recorded(run)}
-    ds = xr.Dataset(variables, attrs=schema.run_attributes(run)).isel(run=0)
-    return _with_rank(ds.set_coords([name for name in ["time"] if name in ds]))
-
-
-def _with_rank(ds: xr.Dataset) -> xr.Dataset:
-    return ds.assign_coords(exit=("exit", np.arange(1, ds.sizes["exit"] + 1), schema.RANK))
-
-
-def _attributes(variable: Variable) -> dict[str, object]:
+def attributes_of(variable: Variable) -> dict[str, object]:
+    """Attributes of a variable, those among them that say what it counts."""
     counting = {"sample_dimension": variable.counts} if variable.counts else {}
     return variable.attributes() | counting
 
@@ -104,7 +82,7 @@ def _write_variable(file: netCDF4.Dataset, variable: Variable, values: np.ndarra
 
 def stored_attributes(variable: Variable) -> dict[str, Any]:
     """Attributes of a variable in a file."""
-    attributes = _attributes(variable)
+    attributes = attributes_of(variable)
     if variable.dims[0] == "sample" and variable.name != "time":
         attributes["coordinates"] = "time"
     if variable.resolution:

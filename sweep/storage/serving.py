@@ -4,15 +4,12 @@ import hashlib
 import json
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from typing import NamedTuple
 
-import netCDF4
-
-from engine import FINGERPRINT, Scenario
+from engine import FINGERPRINT
 from engine.errors import require
 from sweep.errors import SweepStopped
-from sweep.schema import SCHEMA_VERSION, scenario_hash
+from sweep.schema import SCHEMA_VERSION
 from sweep.storage.keys import Wanted
 from sweep.storage.manifest import Entry
 from sweep.storage.store import Store
@@ -57,7 +54,7 @@ def serving(wanted: Iterable[Wanted], store: Store, on_code_change: str = RERUN)
     finished, wanted = store.finished(), list(wanted)
     entries = {w.key: finished[w.key] for w in wanted if w.key in finished}
     missing = [w for w in wanted if w.key not in entries]
-    others = _by_scenario(finished, store) if missing else {}
+    others = _by_scenario(finished) if missing else {}
     stale = {w.key: others[w.scenario] for w in missing if w.scenario in others}
     if stale and on_code_change == ERROR:
         raise SweepStopped(f"{changed(stale, len(wanted))}: choose on_code_change = 'rerun' or 'accept'")
@@ -71,18 +68,8 @@ def changed(stale: Mapping[str, Entry], total: int) -> str:
     return f"{len(stale)} of {total} runs {are} done by another state of the engine ({engines}; now {FINGERPRINT})"
 
 
-def _by_scenario(finished: Mapping[str, Entry], store: Store) -> dict[str, Entry]:
+def _by_scenario(finished: Mapping[str, Entry]) -> dict[str, Entry]:
     """Scenario -> the run of another engine that was finished last."""
-    known = (entry if entry.engine else _identified(entry, store) for entry in finished.values())
-    return {e.scenario: e for e in known if e.engine not in ("", FINGERPRINT) and e.schema == SCHEMA_VERSION}
-
-
-def _identified(entry: Entry, store: Store) -> Entry:
-    """An entry of an older jamsweep, whose manifest did not say what had been run; its file does."""
-    try:
-        with netCDF4.Dataset(store.file(entry.key)) as file:
-            scenario = scenario_hash(Scenario.from_json(file.scenario).canonical())
-            engine, schema = str(file.engine_fingerprint), int(file.schema_version)
-    except (OSError, RuntimeError, AttributeError, ValueError, TypeError, KeyError):
-        return entry
-    return replace(entry, scenario=scenario, engine=engine, schema=schema)
+    return {
+        e.scenario: e for e in finished.values() if e.engine not in ("", FINGERPRINT) and e.schema == SCHEMA_VERSION
+    }

@@ -26,7 +26,7 @@ def jamsweep(*arguments: object) -> int:
 def old(grid: Grid, store: Path) -> Store:
     """A store with four of six runs, made by another engine."""
     with pytest.MonkeyPatch.context() as patch:
-        for module in ("schema", "storage.store", "storage.serving", "gather"):
+        for module in ("schema", "storage.store", "storage.serving", "gathering"):
             patch.setattr(importlib.import_module(f"sweep.{module}"), "FINGERPRINT", OLD)
         sweep(Grid("lin_room", v_d=[1.0, 1.4], seed=range(2), **TINY), store, jobs=1, progress=False)
     return Store(store)
