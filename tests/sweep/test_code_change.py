@@ -89,12 +89,3 @@ def test_the_choice_is_an_option_of_the_command_and_an_entry_of_the_file(
 def test_an_unknown_choice_is_refused(grid: Grid, old: Store) -> None:
     with pytest.raises(BadInput, match="on_code_change 'maybe' is not known: choose one of error, rerun, accept"):
         sweep(grid, old, on_code_change="maybe")
-
-
-def test_runs_of_a_manifest_that_did_not_name_the_engine_are_known_by_their_files(grid: Grid, old: Store) -> None:
-    manifest = old.path / "manifest.jsonl"
-    lines = [json.loads(line) for line in manifest.read_text().splitlines() if line]
-    plain = [{n: v for n, v in line.items() if n not in ("scenario", "engine", "schema")} for line in lines]
-    manifest.write_text("\n".join(map(json.dumps, plain)) + "\n")
-    with pytest.raises(SweepStopped, match="4 of 6 runs are done by another state"):
-        gather(grid, old, on_code_change="error")
