@@ -14,6 +14,7 @@ import click
 from engine import FINGERPRINT, OUTCOMES, BadInput
 from engine.errors import require
 from sweep.errors import DamagedFile, SweepStopped
+from sweep.export_command import export
 from sweep.gridfile import read_gridfile, read_until
 from sweep.report import tell
 from sweep.run_command import run
@@ -82,7 +83,7 @@ def cli() -> None:
     """  # noqa: D301  click reads \b as a character
 
 
-for command in (run, status, gather, verify, compact):
+for command in (run, status, gather, verify, compact, export):
     cli.add_command(command)
 
 
