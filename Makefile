@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
 
-.PHONY: help setup bench stress torture study-accuracy study-readings test lint constraints clean
+.PHONY: help setup bench stress torture study-accuracy study-readings study-real-crowds test lint constraints clean
 .DEFAULT_GOAL := help
 
 help:  ## this list
@@ -37,6 +37,9 @@ study-accuracy: $(READY)  ## error, bias and time of the numerics: make study-ac
 
 study-readings: $(READY)  ## readings of Lin's paper against its numbers: make study-readings [QUICK=1] [JOBS=2] [DOCS=1]
 	@$(BIN)/python -m studies.readings --jobs $(JOBS) $(if $(QUICK),--quick) $(if $(DOCS),--docs)
+
+study-real-crowds: $(READY)  ## real crowds beside simulated ones: make study-real-crowds DATA=folder [QUICK=1] [JOBS=2]
+	@$(BIN)/python -m studies.real_crowds --jobs $(JOBS) $(if $(QUICK),--quick) $(if $(DATA),--data '$(DATA)')
 
 bench: $(READY)  ## this engine beside its peers: make bench [QUICK=1]; $(BIN)/pip install -e '.[bench]' brings them
 	@$(BIN)/python -m studies.bench $(if $(QUICK),--quick) $(if $(DOCS),--docs)
