@@ -16,6 +16,7 @@ from engine.errors import require
 from sweep.errors import DamagedFile, SweepStopped
 from sweep.export_command import export
 from sweep.gridfile import read_gridfile, read_until
+from sweep.page_commands import report, view
 from sweep.report import tell
 from sweep.run_command import run
 from sweep.running.backends import BACKENDS, DASK, LOKY
@@ -83,7 +84,7 @@ def cli() -> None:
     """  # noqa: D301  click reads \b as a character
 
 
-for command in (run, status, gather, verify, compact, export):
+for command in (run, view, status, gather, report, verify, compact, export):
     cli.add_command(command)
 
 
