@@ -99,7 +99,11 @@ def _stride(run: xr.Dataset, every: int | None) -> int:
 
 def _write_page(text: str, path: Path, show: bool) -> None:
     require_writable(path.absolute().parent, "output folder")
-    replace_durably(path, lambda temporary: temporary.write_text(text, "utf-8"))
+    replace_durably(path, lambda temporary: _write_text(temporary, text))
     click.echo(str(path))
     if show:
         webbrowser.open(path.absolute().as_uri())
+
+
+def _write_text(path: Path, text: str) -> None:
+    path.write_text(text, "utf-8")

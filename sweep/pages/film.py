@@ -15,6 +15,7 @@ from sweep.pages.touching import Contacts, contacts_of
 
 COLOURS = {"speed": ("viridis", "speed, m/s"), "force": ("cividis", "contact force on a person, N")}
 FRAMES = {".mp4": 25, ".gif": 12}  # a second
+FULL = 2000.0  # N, of a contact drawn as wide as any
 SIZE, DPI = (9.6, 6.0), 100  # inch, 960 x 600 pixels
 
 
@@ -40,7 +41,7 @@ def write_film(run: xr.Dataset, path: Path, rate: float = 4.0, colour: str = "sp
     require(colour in COLOURS, "colour", repr(colour), "is not known", f"choose one of {', '.join(COLOURS)}")
     there = kind != ".mp4" or FFMpegWriter.isAvailable()
     require(there, "film", f"'{path}'", "needs ffmpeg, which is not installed", "install it, or write a .gif")
-    begin, end = float(run.time[0]), float(run.time[-1])
+    begin, end = span(run)
     times = np.append(np.arange(begin, end, rate / FRAMES[kind]), end)
     drawing = _Drawing(run, colour)
 
@@ -88,9 +89,11 @@ class _Drawing:
         room.add_collection(self.touching)
         self.figure.colorbar(self.discs, ax=room, label=COLOURS[colour][1], location="bottom", shrink=0.8, extend="max")
         self.title = room.set_title("")
-        out = run.exit_time.values[np.isfinite(run.exit_time.values)]
-        self.exits = out[out <= float(run.time[-1])]
-        begin, end = float(run.time[0]), float(run.time[-1])
+        self.left = np.full(run.sizes["person"], np.inf)
+        good = np.isfinite(run.exit_time.values)
+        self.left[run.exit_person.values[good]] = run.exit_time.values[good]
+        self.exits = run.exit_time.values[good]
+        begin, end = span(run)
         steps = np.concatenate([[begin], self.exits, [end]])
         inside = run.sizes["person"] - np.concatenate([np.arange(self.exits.size + 1), [self.exits.size]])
         curve.step(steps, inside, where="post")
@@ -109,19 +112,24 @@ class _Drawing:
         self.touching.set_segments(list(np.stack([np.column_stack([x[i], y[i]]), np.column_stack([x[j], y[j]])], 1)))
         if self.contacts.force is not None:
             force = self.contacts.force[self.first[k] : self.first[k + 1]][pair]
-            self.touching.set_linewidths(0.4 + 4.0 * np.minimum(force / 2000.0, 1.0))
+            self.touching.set_linewidth((0.4 + 4.0 * np.minimum(force / FULL, 1.0)).tolist())
         inside = run.sizes["person"] - int(np.searchsorted(self.exits, time, side="right"))
         self.title.set_text(f"{time:.1f} s, {inside} of {run.sizes['person']} inside")
         self.mark.set_data([time], [inside])
 
     def _places(self, k: int, time: float) -> tuple[np.ndarray, np.ndarray]:
-        """Places between two samples; those who leave between them stay where they were seen last."""
-        run = self.run
-        x, y, times = run.x.values, run.y.values, run.time.values
-        if k + 1 >= times.size:
-            return x[k], y[k]
-        share = (time - times[k]) / (times[k + 1] - times[k])
-        return tuple(np.where(np.isfinite(v[k + 1]), v[k] + share * (v[k + 1] - v[k]), v[k]) for v in (x, y))
+        """Places between two samples, nan for those who left; others whom the next one lacks stay."""
+        run, times = self.run, self.run.time.values
+        last = min(k + 1, times.size - 1)
+        share = (time - times[k]) / (times[last] - times[k]) if last > k else 0.0
+        x, y = (v[k] + share * np.nan_to_num(v[last] - v[k]) for v in (run.x.values, run.y.values))
+        gone = (self.left <= time) & ~((last > k) & np.isfinite(run.x.values[last]))
+        return np.where(gone, np.nan, x), np.where(gone, np.nan, y)
+
+
+def span(run: xr.Dataset) -> tuple[float, float]:
+    """From the first sample to the end of the run, s."""
+    return float(run.time[0]), max(float(run.time[-1]), float(run.end_time))
 
 
 def _coloured(run: xr.Dataset, contacts: Contacts, colour: str) -> tuple[np.ndarray, float]:

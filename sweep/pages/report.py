@@ -3,13 +3,14 @@
 import html
 import itertools
 import json
+import re
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from engine import OUTCOMES
+from engine import FINGERPRINT, OUTCOMES
 from engine.rooms import ROOMS
 from sweep.pages.cells import Cell, Value, axes_of, cells_of
 from sweep.pages.svg import Point, Series, chart, key, outcome_table
@@ -59,7 +60,7 @@ def _summary(ds: xr.Dataset, store: Store) -> str:
     """Numbers of runs and their outcomes in a line, and whether the dataset is behind the store."""
     counts = {word: int((ds.outcome == code).sum()) for code, word in enumerate(OUTCOMES)}
     total = sum(counts.values())
-    said = ", ".join(f"<b>{number}</b> {WORDS[word]}" for word, number in counts.items() if number)
+    said = ", ".join(f"<b>{counts[word]}</b> {name}" for word, name in WORDS.items() if counts[word])
     line = f"{total - counts['missing']} of {total} runs done: {said}."
     behind = len(store.finished()) > total - counts["missing"] and counts["missing"]
     remedy = " The store holds more runs than this dataset: <code>jamsweep gather</code> brings those of the grid in."
@@ -94,7 +95,7 @@ def _figures(ds: xr.Dataset, cells: list[Cell], given: str) -> str:
     first, second = [*names, ""][:2]
     values = _values(cells, first)
     numbers = all(isinstance(value, int | float) and not isinstance(value, bool) for value in values)
-    places = [float(value) if numbers else float(k) for k, value in enumerate(values)]
+    places = [float(str(value)) if numbers else float(k) for k, value in enumerate(values)]
     time = [_series(cells, "clearance", "s", first, second, one, places) for one in _values(cells, second)]
     out = [_series(cells, "share_out", "", first, second, one, places) for one in _values(cells, second)]
     x = _labelled(first)
@@ -120,14 +121,17 @@ def _series(
         cell = _at(cells, {first: value, second: one})
         quantiles = getattr(cell, what)
         if quantiles:
-            points.append(Point(place, *quantiles, _note(cell, quantiles, units)))
+            low, lower, middle, upper, high = quantiles
+            all_out = cell.counts["all_out"]
+            part = f"{all_out}/{cell.runs}" if what == "clearance" and all_out < cell.runs else ""
+            points.append(Point(place, low, lower, middle, upper, high, _note(cell, quantiles, units), part))
     return Series(f"{second} = {_short(one)}" if second else "", points)
 
 
 def _note(cell: Cell, quantiles: tuple[float, ...], units: str) -> str:
     low, lower, middle, upper, high = (f"{value:.3g}" for value in quantiles)
     where = ", ".join(f"{name} = {_short(value)}" for name, value in cell.at.items())
-    runs = ", ".join(f"{number} {WORDS[word]}" for word, number in cell.counts.items() if number)
+    runs = ", ".join(f"{cell.counts[word]} {name}" for word, name in WORDS.items() if cell.counts[word])
     return f"{where}: median {middle} {units}, quartiles {lower} to {upper}, range {low} to {high}; {runs}"
 
 
@@ -215,10 +219,13 @@ def _again(ds: xr.Dataset, store: Store) -> str:
     """What runs the sweep again, or what is missing of it."""
     grid = _json(ds, "grid")
     room, axes, constants = grid.get("room", ""), grid.get("axes", {}), grid.get("constants", {})
+    if not room:
+        return "<p>The dataset does not say.</p>"
     if room in ROOMS:
         parts = [f"room = {_toml(room)}", f"store = {_toml(store.path.name)}", "", "[axes]"]
         parts += [f"{name} = {_toml(values)}" for name, values in axes.items()]
-        parts += ["", "[constants]", *(f"{name} = {_toml(value)}" for name, value in constants.items())]
+        held = [f"{name} = {_toml(value)}" for name, value in constants.items()]
+        parts += ["", "[constants]", *held] if held else []
         said = "As <code>grid.toml</code>; <code>jamsweep sweep grid.toml</code> runs what the store lacks."
     else:
         keywords = ", ".join(f"{name}={value!r}" for name, value in {**axes, **constants}.items())
@@ -226,6 +233,8 @@ def _again(ds: xr.Dataset, store: Store) -> str:
         parts = [f"from {module} import {function}", "from sweep import Grid, sweep", ""]
         parts += [f"sweep(Grid({function}, {keywords}), store={store.path.name!r})"]
         said = "In Python; runs what the store lacks."
+    other = ds.attrs.get("engine_fingerprint") != FINGERPRINT
+    said += f" The engine installed here is {FINGERPRINT}: it would run all of them anew." if other else ""
     return f"<p>{said}</p><pre>{html.escape(chr(10).join(parts))}</pre>"
 
 
@@ -262,7 +271,21 @@ def _at(cells: list[Cell], at: dict[str, Value | None]) -> Cell:
 
 def _labelled(name: str) -> str:
     units, _ = PARAMETERS.get(name, ("1", ""))
-    return name if units == "1" else f"{name}, {units}"
+    return name if units == "1" else f"{name}, {spoken_units(units)}"
+
+
+def spoken_units(units: str) -> str:
+    """Units as a reader has them: "m s-1" is "m/s", "kg m-1 s-1" is "kg/(m s)"."""
+    parts = [re.fullmatch(r"([A-Za-z]+)(-?\d*)", part) for part in units.split()]
+    if not all(parts):
+        return units
+    found = [(part[1], int(part[2] or 1)) for part in parts if part]
+    over, under = (
+        [f"{name}{abs(power) if abs(power) > 1 else ''}" for name, power in found if (power > 0) == above]
+        for above in (True, False)
+    )
+    below = f"({' '.join(under)})" if len(under) > 1 else "".join(under)
+    return f"{' '.join(over) or '1'}/{below}" if under else " ".join(over)
 
 
 def _named(values: Sequence[Value | None]) -> list[str]:

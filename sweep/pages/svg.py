@@ -8,6 +8,12 @@ from typing import NamedTuple
 WIDTH, HEIGHT = 680, 330  # of a chart
 LEFT, RIGHT, TOP, BOTTOM = 62, 16, 12, 46
 MARKS = ("circle", "square", "diamond", "triangle", "ring", "cross")  # that tell series apart without colour
+CORNERS: dict[str, list[tuple[float, float]]] = {
+    "square": [(-1, -1), (1, -1), (1, 1), (-1, 1)],
+    "diamond": [(0, -1.3), (1.3, 0), (0, 1.3), (-1.3, 0)],
+    "triangle": [(0, -1.2), (1.1, 0.9), (-1.1, 0.9)],
+    "cross": [(-1, -1), (0, -0.4), (1, -1), (0.4, 0), (1, 1), (0, 0.4), (-1, 1), (-0.4, 0)],
+}
 APART = 7.0  # px, by which series at the same value stand beside each other
 CELL, ROW, NAMES = 92, 40, 74  # of an outcome table
 
@@ -22,6 +28,7 @@ class Point(NamedTuple):
     upper: float
     high: float
     note: str
+    part: str = ""  # "7/10" where not all runs have the quantity: the mark is hollow, and says so
 
 
 class Series(NamedTuple):
@@ -48,7 +55,7 @@ def chart(
     x_label, y_label : with units
     top : of the vertical axis; what the data need if not given
     """
-    highest = top or max((p.high for s in series for p in s.points), default=1.0) * 1.05 or 1.0
+    highest = top or max((p.high for s in series for p in s.points), default=1.0) * 1.1 or 1.0
     low, high = min(places), max(places)
     reach = (high - low) or 1.0
 
@@ -72,7 +79,9 @@ def chart(
             title = f"<title>{html.escape(p.note)}</title>"
             thin = f'<line class="thin" x1="{x:.1f}" x2="{x:.1f}" y1="{py(p.low):.1f}" y2="{py(p.high):.1f}"/>'
             thick = f'<line class="thick" x1="{x:.1f}" x2="{x:.1f}" y1="{py(p.lower):.1f}" y2="{py(p.upper):.1f}"/>'
-            parts.append(f"<g>{title}{thin}{thick}{_mark(k, x, py(p.middle))}</g>")
+            count = _text(x, max(py(p.high) - 9, TOP + 4), p.part, "middle") if p.part else ""
+            some = ' class="some"' if p.part else ""
+            parts.append(f"<g{some}>{title}{thin}{thick}{_mark(k, x, py(p.middle))}{count}</g>")
         parts.append("</g>")
     label = html.escape(f"{y_label} against {x_label}")
     return f'<svg class="chart" role="img" aria-label="{label}" viewBox="0 0 {WIDTH} {HEIGHT}">{"".join(parts)}</svg>'
@@ -152,10 +161,5 @@ def _mark(k: int, x: float, y: float) -> str:
     kind, a = MARKS[k % len(MARKS)], 5.0
     if kind in ("circle", "ring"):
         return f'<circle class="{kind}" cx="{x:.1f}" cy="{y:.1f}" r="{a}"/>'
-    corners = {
-        "square": [(-1, -1), (1, -1), (1, 1), (-1, 1)],
-        "diamond": [(0, -1.3), (1.3, 0), (0, 1.3), (-1.3, 0)],
-        "triangle": [(0, -1.2), (1.1, 0.9), (-1.1, 0.9)],
-        "cross": [(-1, -1), (0, -0.4), (1, -1), (0.4, 0), (1, 1), (0, 0.4), (-1, 1), (-0.4, 0)],
-    }[kind]
-    return f'<polygon points="{" ".join(f"{x + a * u:.1f},{y + a * v:.1f}" for u, v in corners)}"/>'
+    corners = " ".join(f"{x + a * u:.1f},{y + a * v:.1f}" for u, v in CORNERS[kind])
+    return f'<polygon points="{corners}"/>'

@@ -39,7 +39,8 @@ def contacts_of(run: xr.Dataset) -> Contacts:
 
 
 def _recorded(run: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    return tuple(run[name].values.astype(np.int64) for name in ("row_size", "contact_i", "contact_j"))
+    rows, i, j = (run[name].values.astype(np.int64) for name in ("row_size", "contact_i", "contact_j"))
+    return rows, i, j
 
 
 def _found(run: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -6,6 +6,7 @@ import os
 import select
 import shutil
 import subprocess
+import sys
 import time
 from contextlib import suppress
 from io import BytesIO
@@ -16,6 +17,15 @@ import numpy as np
 from PIL import Image
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+AS_3_AND_4 = """
+import os, sys
+read, write = (os.dup(int(pipe)) for pipe in sys.argv[1:3])  # away from 3 and 4 themselves
+os.dup2(read, 3)
+os.dup2(write, 4)
+for pipe in (3, 4):
+    os.set_inheritable(pipe, True)  # dup2 leaves a pipe that is there already as it is
+os.execv(sys.argv[3], sys.argv[3:])
+"""  # where a Chromium looks for its pipes
 PATIENCE = 120.0  # s for one answer, on a machine with other work
 KEYS = {" ": ("Space", 32), "ArrowLeft": ("ArrowLeft", 37), "ArrowRight": ("ArrowRight", 39)}
 KEYS |= {"Home": ("Home", 36), "End": ("End", 35), "Escape": ("Escape", 27), "Tab": ("Tab", 9)}
@@ -36,15 +46,9 @@ class Browser:
         options += ["--remote-debugging-pipe", f"--user-data-dir={profile}", f"--window-size={width},{height}"]
         options += ["--disable-background-networking", "--disable-component-update", "--disable-sync", *extra]
 
-        def as_3_and_4() -> None:
-            read, write = os.dup(theirs_in), os.dup(theirs_out)  # away from 3 and 4 themselves
-            os.dup2(read, 3)
-            os.dup2(write, 4)
-
         self._process = subprocess.Popen(
-            [program, *options, "about:blank"],
-            close_fds=False,
-            preexec_fn=as_3_and_4,
+            [sys.executable, "-c", AS_3_AND_4, str(theirs_in), str(theirs_out), program, *options, "about:blank"],
+            pass_fds=(theirs_in, theirs_out),
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )

@@ -38,6 +38,11 @@ class Player {
     return [box.left + x, box.top + y, this.recording.radius[person] * this.view.scale];
   }
 
+  // The colour that a person has now: red, green, blue of 0 to 255.
+  colourOf(person) {
+    return this.view.colourOf(person, this.recording.sampleAt(this.time)).match(/\d+/g).map(Number);
+  }
+
   play(on) {
     if (on && this.time >= this.recording.end) this.time = this.recording.begin;
     this.playing = on;

@@ -17,7 +17,7 @@ class Recording {
     this.radius = Float64Array.from(facts.radius);
     this.persons = this.radius.length;
     this.begin = this.time[0];
-    this.end = this.time[this.samples - 1];
+    this.end = Math.max(this.time[this.samples - 1], facts.end);
     this.row = new Int32Array(this.samples + 1); // first contact of each sample
     for (let k = 0; k < this.samples; k++) this.row[k + 1] = this.row[k] + this.rowSize[k];
     this.exitOf = new Int32Array(this.persons).fill(-1);
@@ -64,22 +64,24 @@ class Recording {
 
   placeAt(person, k, share, time, places) {
     const at = person * this.samples + k;
+    const next = k + 1 < this.samples ? this.x[at + 1] : NOTHING;
     let [x, y] = [this.x[at] / 1000, this.y[at] / 1000];
     if (this.x[at] === NOTHING) x = y = NaN;
-    else if (share > 0 && this.x[at + 1] !== NOTHING) {
-      x += share * (this.x[at + 1] / 1000 - x);
+    else if (share > 0 && next !== NOTHING) {
+      x += share * (next / 1000 - x);
       y += share * (this.y[at + 1] / 1000 - y);
     } else if (share > 0) [x, y] = this.leaving(person, k, time, x, y);
     places[2 * person] = x;
     places[2 * person + 1] = y;
   }
 
-  // Straight to the place of leaving, and gone then.
+  // Straight to the place of leaving, and gone then; those who never leave stay where they were seen last.
   leaving(person, k, time, x, y) {
     const rank = this.exitOf[person];
     const { time: times, x: xs, y: ys } = this.facts.exits;
-    if (rank < 0 || times[rank] <= time) return [NaN, NaN];
-    const share = (time - this.time[k]) / Math.max(times[rank] - this.time[k], 1e-9);
+    if (rank < 0) return [x, y];
+    if (times[rank] <= time) return [NaN, NaN];
+    const share = (time - this.time[k]) / (times[rank] - this.time[k]);
     return [x + share * (xs[rank] - x), y + share * (ys[rank] - y)];
   }
 

@@ -120,17 +120,14 @@ class View {
 
   drawPersons(c, k) {
     const { recording, places, scale } = this;
-    const { speedTop, forceTop } = recording.facts;
-    const [map, byForce] = [MAPS[this.colour], this.colour === "force"];
     c.strokeStyle = this.style.outline;
     c.lineWidth = 1;
     let shown = 0;
     for (let i = 0; i < recording.persons; i++) {
       const x = places[2 * i];
       if (x !== x) continue;
-      const share = byForce ? this.forces[i] / forceTop : recording.speedOf(i, k) / speedTop;
       const [px, py] = this.screen(x, places[2 * i + 1]);
-      c.fillStyle = colourOf(map, share);
+      c.fillStyle = this.colourOf(i, k);
       c.beginPath();
       c.arc(px, py, recording.radius[i] * scale, 0, 2 * Math.PI);
       c.fill();
@@ -138,6 +135,12 @@ class View {
       shown++;
     }
     return shown;
+  }
+
+  colourOf(i, k) {
+    const { speedTop, forceTop } = this.recording.facts;
+    const share = this.colour === "force" ? this.forces[i] / forceTop : this.recording.speedOf(i, k) / speedTop;
+    return colourOf(MAPS[this.colour], share);
   }
 
   // Lines between centres, or to the nearest point of the wall, as wide as the force; one stroke for each width.
