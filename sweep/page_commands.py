@@ -11,7 +11,7 @@ from engine.errors import BadInput, require
 from sweep.storage.durable import replace_durably, require_writable
 from sweep.results import open_results
 from sweep.pages import player_page, report_page, write_film
-from sweep.pages.player import check_playable
+from sweep.pages.motion import check_playable
 from sweep.storage.reading import read_run
 from sweep.storage.store import Store
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 from engine.errors import require
 from sweep.storage.durable import replace_durably
-from sweep.pages.player import box_of, check_playable, common_top, force_on_each, speeds
+from sweep.pages.motion import box_of, check_playable, common_top, force_on_each, speeds
 from sweep.pages.touching import Contacts, contacts_of
 
 COLOURS = {"speed": ("viridis", "speed, m/s"), "force": ("cividis", "contact force on a person, N")}

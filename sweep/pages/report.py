@@ -3,7 +3,6 @@
 import html
 import itertools
 import json
-import re
 from collections.abc import Sequence
 from typing import Any
 
@@ -13,20 +12,12 @@ import xarray as xr
 from engine import FINGERPRINT, OUTCOMES
 from engine.rooms import ROOMS
 from sweep.pages.cells import Cell, Value, axes_of, cells_of
-from sweep.pages.svg import Point, Series, chart, key, outcome_table
+from sweep.pages.figures import figures, outcomes, table
 from sweep.pages.template import asset, filled, page, rows_of, version
-from sweep.schema import PARAMETERS
+from sweep.pages.words import WORDS, labelled, short
 from sweep.storage.store import Store
 
-WORDS = {
-    "all_out": "all out",
-    "blocked": "blocked",
-    "frozen": "frozen",
-    "time_limit": "time limit",
-    "unstable": "unstable",
-    "missing": "missing",
-}
-SHOWN_FAILURES = 200
+SHOWN_FAILURES, SHOWN_PANELS = 200, 24
 
 
 def report_page(ds: xr.Dataset, store: Store) -> str:
@@ -40,14 +31,16 @@ def report_page(ds: xr.Dataset, store: Store) -> str:
     store : for the manifest and the failures
     """
     cells = cells_of(ds)
+    panels = _panels(ds, cells)
     title = f"Sweep of {ds.attrs.get('room', 'a room')}"
     words = {
         "title": html.escape(title),
         "summary": _summary(ds, store),
-        "outcomes": "".join(_outcomes(panel, given) for given, panel in _panels(ds, cells)),
+        "outcomes": "".join(outcomes(panel, given) for given, panel in panels[:SHOWN_PANELS]),
         "legend": _legend(),
-        "figures": "".join(_figures(ds, panel, given) for given, panel in _panels(ds, cells)),
-        "table": _table(ds, cells),
+        "more": _more(len(panels)),
+        "figures": "".join(figures(panel, given) for given, panel in panels[:SHOWN_PANELS]),
+        "table": table(cells),
         "failures": _failures(store),
         "grid": rows_of(_grid(ds)),
         "provenance": rows_of(_provenance(ds, store)),
@@ -74,83 +67,13 @@ def _panels(ds: xr.Dataset, cells: list[Cell]) -> list[tuple[str, list[Cell]]]:
     for values in itertools.product(*(values for _, values in further)):
         given = dict(zip((name for name, _ in further), values, strict=True))
         inside = [cell for cell in cells if given.items() <= cell.at.items()]
-        panels.append((", ".join(f"{name} = {_short(value)}" for name, value in given.items()), inside))
+        panels.append((", ".join(f"{name} = {short(value)}" for name, value in given.items()), inside))
     return panels
 
 
-def _outcomes(cells: list[Cell], given: str) -> str:
-    names = list(cells[0].at)
-    first, second = [*names, "", ""][:2]
-    columns, rows = _values(cells, first), _values(cells, second)
-    counts = [[_at(cells, {first: c, second: r}).counts for c in columns] for r in rows]
-    across = _labelled(first) if first else "all runs"
-    table = outcome_table(_named(rows), _named(columns), counts, second, across)
-    return f"<figure>{_given(given)}{table}</figure>"
-
-
-def _figures(ds: xr.Dataset, cells: list[Cell], given: str) -> str:
-    names = list(cells[0].at)
-    if not names:
-        return ""
-    first, second = [*names, ""][:2]
-    values = _values(cells, first)
-    numbers = all(isinstance(value, int | float) and not isinstance(value, bool) for value in values)
-    places = [float(str(value)) if numbers else float(k) for k, value in enumerate(values)]
-    time = [_series(cells, "clearance", "s", first, second, one, places) for one in _values(cells, second)]
-    out = [_series(cells, "share_out", "", first, second, one, places) for one in _values(cells, second)]
-    x = _labelled(first)
-    signs = key([one.name for one in time]) if second else ""
-    parts = [
-        (
-            "Clearance time of the runs in which all got out",
-            chart(time, places, _named(values), x, "clearance time, s"),
-        ),
-        ("Share of the persons who got out, all runs", chart(out, places, _named(values), x, "share out", 1.0)),
-    ]
-    if not any(one.points for one in time):
-        parts[0] = (parts[0][0] + ": there is none", "")
-    drawn = "".join(f"<figure><figcaption>{caption}</figcaption>{drawing}</figure>" for caption, drawing in parts)
-    return f'{_given(given)}{signs}<div class="pair">{drawn}</div>'
-
-
-def _series(
-    cells: list[Cell], what: str, units: str, first: str, second: str, one: Value | None, places: list[float]
-) -> Series:
-    points = []
-    for place, value in zip(places, _values(cells, first), strict=True):
-        cell = _at(cells, {first: value, second: one})
-        quantiles = getattr(cell, what)
-        if quantiles:
-            low, lower, middle, upper, high = quantiles
-            all_out = cell.counts["all_out"]
-            part = f"{all_out}/{cell.runs}" if what == "clearance" and all_out < cell.runs else ""
-            points.append(Point(place, low, lower, middle, upper, high, _note(cell, quantiles, units), part))
-    return Series(f"{second} = {_short(one)}" if second else "", points)
-
-
-def _note(cell: Cell, quantiles: tuple[float, ...], units: str) -> str:
-    low, lower, middle, upper, high = (f"{value:.3g}" for value in quantiles)
-    where = ", ".join(f"{name} = {_short(value)}" for name, value in cell.at.items())
-    runs = ", ".join(f"{cell.counts[word]} {name}" for word, name in WORDS.items() if cell.counts[word])
-    return f"{where}: median {middle} {units}, quartiles {lower} to {upper}, range {low} to {high}; {runs}"
-
-
-def _table(ds: xr.Dataset, cells: list[Cell]) -> str:
-    axes = list(axes_of(ds))
-    shown = [word for word in WORDS if any(cell.counts[word] for cell in cells)]
-    heads = [*map(_labelled, axes), "runs", *(WORDS[word] for word in shown)]
-    heads += ["clearance time, s: median", "quartiles", "range"]
-    rows = []
-    for cell in cells:
-        values = [*_named(list(cell.at.values())), str(cell.runs), *(str(cell.counts[word]) for word in shown)]
-        if cell.clearance:
-            low, lower, middle, upper, high = (f"{value:.1f}" for value in cell.clearance)
-            values += [middle, f"{lower} to {upper}", f"{low} to {high}"]
-        else:
-            values += ["none", "", ""]
-        rows.append("<tr>" + "".join(f"<td>{html.escape(value)}</td>" for value in values) + "</tr>")
-    head = "".join(f'<th scope="col">{html.escape(name)}</th>' for name in heads)
-    return f"<table><thead><tr>{head}</tr></thead><tbody>{''.join(rows)}</tbody></table>"
+def _more(panels: int) -> str:
+    hidden = panels - SHOWN_PANELS
+    return f"<p>{hidden} more combinations of the further axes stand in the table alone.</p>" if hidden > 0 else ""
 
 
 def _failures(store: Store) -> str:
@@ -166,18 +89,19 @@ def _failures(store: Store) -> str:
         )
         items.append(f"<li><b>{html.escape(named)}</b>: {html.escape(lines[0])}</li>")
     more = f"<p>and {len(files) - SHOWN_FAILURES} more</p>" if len(files) > SHOWN_FAILURES else ""
-    return f"<ul>{''.join(items)}</ul>{more}<p>In full in <code>failed/</code> of the store.</p>"
+    where = "<p>Of all grids swept into this store; in full in its folder <code>failed/</code>.</p>"
+    return f"<ul>{''.join(items)}</ul>{more}{where}"
 
 
 def _grid(ds: xr.Dataset) -> list[tuple[str, str]]:
-    axes = [(_labelled(str(name)), _listed(ds[name].values.tolist())) for name in ds.outcome.dims]
+    axes = [(labelled(str(name)), _listed(ds[name].values.tolist())) for name in ds.outcome.dims]
     return [("room", str(ds.attrs.get("room", "unknown"))), *axes, *_parameters(ds, "constants", "held")]
 
 
 def _parameters(ds: xr.Dataset, attribute: str, word: str) -> list[tuple[str, str]]:
     plain = _json(ds, attribute)
-    defaults = ", ".join(f"{name} = {_short(value)}" for name, value in _json(ds, "defaults").items())
-    held = [(_labelled(name), f"{_short(value)} ({word})") for name, value in plain.items()]
+    defaults = ", ".join(f"{name} = {short(value)}" for name, value in _json(ds, "defaults").items())
+    held = [(labelled(name), f"{short(value)} ({word})") for name, value in plain.items()]
     return [*held, ("defaults", defaults)]
 
 
@@ -256,46 +180,6 @@ def _json(ds: xr.Dataset, attribute: str) -> dict[str, Any]:
     return plain if isinstance(plain, dict) else {}
 
 
-def _given(given: str) -> str:
-    return f"<h3>{html.escape(given)}</h3>" if given else ""
-
-
-def _values(cells: list[Cell], name: str) -> list[Value | None]:
-    """Values of an axis; one, nothing, where there is no such axis."""
-    return list(dict.fromkeys(cell.at.get(name) for cell in cells))
-
-
-def _at(cells: list[Cell], at: dict[str, Value | None]) -> Cell:
-    return next(cell for cell in cells if all(cell.at.get(name) == value for name, value in at.items()))
-
-
-def _labelled(name: str) -> str:
-    units, _ = PARAMETERS.get(name, ("1", ""))
-    return name if units == "1" else f"{name}, {spoken_units(units)}"
-
-
-def spoken_units(units: str) -> str:
-    """Units as a reader has them: "m s-1" is "m/s", "kg m-1 s-1" is "kg/(m s)"."""
-    parts = [re.fullmatch(r"([A-Za-z]+)(-?\d*)", part) for part in units.split()]
-    if not all(parts):
-        return units
-    found = [(part[1], int(part[2] or 1)) for part in parts if part]
-    over, under = (
-        [f"{name}{abs(power) if abs(power) > 1 else ''}" for name, power in found if (power > 0) == above]
-        for above in (True, False)
-    )
-    below = f"({' '.join(under)})" if len(under) > 1 else "".join(under)
-    return f"{' '.join(over) or '1'}/{below}" if under else " ".join(over)
-
-
-def _named(values: Sequence[Value | None]) -> list[str]:
-    return ["" if value is None else _short(value) for value in values]
-
-
 def _listed(values: Sequence[Value]) -> str:
     few = list(values) if len(values) <= 24 else [*values[:3], "...", *values[-2:]]
-    return f"{', '.join(map(_short, few))} ({len(values)})"
-
-
-def _short(value: Any) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+    return f"{', '.join(map(short, few))} ({len(values)})"

@@ -7,13 +7,17 @@ from typing import NamedTuple
 
 WIDTH, HEIGHT = 680, 330  # of a chart
 LEFT, RIGHT, TOP, BOTTOM = 62, 16, 12, 46
-MARKS = ("circle", "square", "diamond", "triangle", "ring", "cross")  # that tell series apart without colour
+MARKS = ("circle", "square", "diamond", "triangle", "down", "cross", "beam")  # 7, and 6 colours: 42 pairs
 CORNERS: dict[str, list[tuple[float, float]]] = {
     "square": [(-1, -1), (1, -1), (1, 1), (-1, 1)],
     "diamond": [(0, -1.3), (1.3, 0), (0, 1.3), (-1.3, 0)],
     "triangle": [(0, -1.2), (1.1, 0.9), (-1.1, 0.9)],
+    "down": [(0, 1.2), (1.1, -0.9), (-1.1, -0.9)],
+    "beam": [(-1.4, -0.5), (1.4, -0.5), (1.4, 0.5), (-1.4, 0.5)],
     "cross": [(-1, -1), (0, -0.4), (1, -1), (0.4, 0), (1, 1), (0, 0.4), (-1, 1), (-0.4, 0)],
 }
+MOST_COUNTS = 60  # marks with room for numbers of runs beside them
+LETTERS = 56  # that fit below a chart
 APART = 7.0  # px, by which series at the same value stand beside each other
 CELL, ROW, NAMES = 92, 40, 74  # of an outcome table
 
@@ -69,7 +73,10 @@ def chart(
     for tick in ticks(highest):
         parts.append(f'<line class="grid" x1="{LEFT}" x2="{WIDTH - RIGHT}" y1="{py(tick):.1f}" y2="{py(tick):.1f}"/>')
         parts.append(_text(LEFT - 8, py(tick) + 4, f"{tick:g}", "end"))
-    parts += [_text(px(p), HEIGHT - BOTTOM + 18, n, "middle") for p, n in zip(places, names, strict=True)]
+    apart = math.ceil(len(names) * max(map(len, names)) / LETTERS)
+    named = list(zip(places, names, strict=True))[::apart]
+    parts += [_text(px(p), HEIGHT - BOTTOM + 18, n, "middle") for p, n in named]
+    roomy = len(series) * len(names) <= MOST_COUNTS
     for k, one in enumerate(series):
         shift = (k - (len(series) - 1) / 2) * APART
         drawn = [(px(p.place) + shift, p) for p in one.points]
@@ -79,7 +86,7 @@ def chart(
             title = f"<title>{html.escape(p.note)}</title>"
             thin = f'<line class="thin" x1="{x:.1f}" x2="{x:.1f}" y1="{py(p.low):.1f}" y2="{py(p.high):.1f}"/>'
             thick = f'<line class="thick" x1="{x:.1f}" x2="{x:.1f}" y1="{py(p.lower):.1f}" y2="{py(p.upper):.1f}"/>'
-            count = _text(x, max(py(p.high) - 9, TOP + 4), p.part, "middle") if p.part else ""
+            count = _text(x, max(py(p.high) - 9, TOP + 4), p.part, "middle") if p.part and roomy else ""
             some = ' class="some"' if p.part else ""
             parts.append(f"<g{some}>{title}{thin}{thick}{_mark(k, x, py(p.middle))}{count}</g>")
         parts.append("</g>")
@@ -116,9 +123,8 @@ def outcome_table(
         parts.append(_text(NAMES - 12, y + 20, name, "end"))
         parts += [_bar(NAMES + CELL * c, y, counts[r][c], f"{name}, {columns[c]}") for c in range(len(columns))]
     label = html.escape(f"Outcomes for each {corner} and {across}")
-    style = f'style="max-width:{width}px"'
-    box = f'viewBox="0 0 {width} {height + 4}"'
-    return f'<svg class="outcomes" {style} role="img" aria-label="{label}" {box}>{"".join(parts)}</svg>'
+    box = f'width="{width}" height="{height + 4}" viewBox="0 0 {width} {height + 4}"'
+    return f'<svg class="outcomes" role="img" aria-label="{label}" {box}>{"".join(parts)}</svg>'
 
 
 def ticks(top: float, about: int = 5) -> list[float]:
@@ -159,7 +165,7 @@ def _text(x: float, y: float, words: str, anchor: str) -> str:
 
 def _mark(k: int, x: float, y: float) -> str:
     kind, a = MARKS[k % len(MARKS)], 5.0
-    if kind in ("circle", "ring"):
-        return f'<circle class="{kind}" cx="{x:.1f}" cy="{y:.1f}" r="{a}"/>'
+    if kind == "circle":
+        return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="{a}"/>'
     corners = " ".join(f"{x + a * u:.1f},{y + a * v:.1f}" for u, v in CORNERS[kind])
     return f'<polygon points="{corners}"/>'

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from studies.measures.arches import blocking_clusters
-from sweep.pages.player import force_on_each
+from sweep.pages.motion import force_on_each
 from sweep.pages.touching import contacts_of
 from tests.pages.browser import Browser
 
@@ -149,7 +149,7 @@ def test_a_click_chooses_a_person_and_the_wheel_keeps_its_place(playing: Browser
     playing.call("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=-400)
     playing.wait("player.state().zoom > 2")
     assert playing.value("player.state().selected") == 7
-    assert "person 7: " in playing.value("document.getElementById('chosen').textContent")
+    playing.wait("document.getElementById('chosen').textContent.startsWith('person 7: ')")
     assert playing.value("player.screenOf(7).slice(0, 2)") == pytest.approx([x, y], abs=2)
     playing.press("0")
     playing.press("Escape")
@@ -187,5 +187,6 @@ def test_a_run_of_one_sample_plays(show: Show, walk: xr.Dataset) -> None:
     browser = show(walk.isel(sample=[0]))
     browser.press("End")
     browser.press("ArrowLeft")
+    browser.wait(f"player.state().shown === {walk.sizes['person']}")
+    assert browser.value("player.state().samples") == 1
     assert browser.errors == []
-    assert browser.value("[player.state().samples, player.state().shown]") == [1, walk.sizes["person"]]

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from engine import BadInput, rooms, simulate
 from sweep import to_dataset
 from sweep.pages import player_page
+from sweep.pages.motion import common_top, speeds, thinned
 from sweep.pages.packing import NOTHING, in_multiples, packed
-from sweep.pages.player import common_top, speeds, thinned
 from sweep.pages.touching import contacts_of
 
 

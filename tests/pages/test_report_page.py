@@ -11,8 +11,8 @@ import xarray as xr
 from sweep import Grid, Store, gather, open_results, sweep
 from sweep.pages import report_page
 from sweep.pages.cells import cells_of
-from sweep.pages.report import spoken_units
 from sweep.pages.svg import ticks
+from sweep.pages.words import spoken_units
 from tests.pages.browser import Browser
 
 TINY = {"N": 4, "size": 4.0}
