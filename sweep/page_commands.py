@@ -8,10 +8,11 @@ import click
 import xarray as xr
 
 from engine.errors import BadInput, require
-from sweep.storage.durable import replace_durably, require_writable
-from sweep.results import open_results
+from sweep.errors import DamagedFile
 from sweep.pages import player_page, report_page, write_film
 from sweep.pages.motion import check_playable
+from sweep.results import open_results
+from sweep.storage.durable import replace_durably, require_writable
 from sweep.storage.reading import read_run
 from sweep.storage.store import Store
 
@@ -78,10 +79,11 @@ def _run_in(file: Path) -> xr.Dataset:
     try:
         run = read_run(file)
         check_playable(run, str(file))
-        run.load()
-    except BadInput:
-        raise
-    except (OSError, RuntimeError, ValueError, KeyError):
+    except DamagedFile as error:
+        raise BadInput(str(error)) from None
+    except (OSError, RuntimeError, ValueError, KeyError) as error:
+        if isinstance(error, BadInput):
+            raise
         remedy = "name a file that `jamsweep run ... -o` wrote, or run it again"
         raise BadInput(f"run file '{file}' is damaged or holds no run: {remedy}") from None
     return run
@@ -99,11 +101,7 @@ def _stride(run: xr.Dataset, every: int | None) -> int:
 
 def _write_page(text: str, path: Path, show: bool) -> None:
     require_writable(path.absolute().parent, "output folder")
-    replace_durably(path, lambda temporary: _write_text(temporary, text))
+    replace_durably(path, lambda temporary: temporary.write_text(text, "utf-8"))
     click.echo(str(path))
     if show:
         webbrowser.open(path.absolute().as_uri())
-
-
-def _write_text(path: Path, text: str) -> None:
-    path.write_text(text, "utf-8")

@@ -9,9 +9,9 @@ from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.figure import Figure
 
 from engine.errors import require
-from sweep.storage.durable import replace_durably
 from sweep.pages.motion import box_of, check_playable, common_top, force_on_each, speeds
 from sweep.pages.touching import Contacts, contacts_of
+from sweep.storage.durable import replace_durably
 
 COLOURS = {"speed": ("viridis", "speed, m/s"), "force": ("cividis", "contact force on a person, N")}
 FRAMES = {".mp4": 25, ".gif": 12}  # a second

@@ -78,4 +78,4 @@ def _touch(contacts: Contacts) -> dict[str, Any]:
 def _exits(run: xr.Dataset) -> dict[str, list[float]]:
     good = np.isfinite(run.exit_time.values)
     kept = {"time": "exit_time", "person": "exit_person", "x": "exit_x", "y": "exit_y"}
-    return {name: np.round(run[source].values[good], 6).tolist() for name, source in kept.items()}
+    return {name: run[source].values[good].tolist() for name, source in kept.items()}

@@ -11,6 +11,7 @@ import xarray as xr
 
 from engine import FINGERPRINT, OUTCOMES
 from engine.rooms import ROOMS
+from sweep.grid import CHOICE
 from sweep.pages.cells import Cell, Value, axes_of, cells_of
 from sweep.pages.figures import figures, outcomes, table
 from sweep.pages.template import asset, filled, page, rows_of, version
@@ -84,13 +85,18 @@ def _failures(store: Store) -> str:
     items = []
     for path in files[:SHOWN_FAILURES]:
         lines = path.read_text("utf-8", errors="replace").splitlines() or ["(empty)"]
-        named = next(
-            (line.removeprefix("parameters: ") for line in lines if line.startswith("parameters: ")), path.stem
-        )
-        items.append(f"<li><b>{html.escape(named)}</b>: {html.escape(lines[0])}</li>")
+        named = _after("parameters: ", lines) or path.stem
+        again = _after("again: ", lines)
+        command = f"<br><code>{html.escape(again)}</code>" if again else ""
+        items.append(f"<li><b>{html.escape(named)}</b>: {html.escape(lines[0])}{command}</li>")
     more = f"<p>and {len(files) - SHOWN_FAILURES} more</p>" if len(files) > SHOWN_FAILURES else ""
     where = "<p>Of all grids swept into this store; in full in its folder <code>failed/</code>.</p>"
     return f"<ul>{''.join(items)}</ul>{more}{where}"
+
+
+def _after(word: str, lines: list[str]) -> str:
+    """The rest of the first line that begins with a word."""
+    return next((line.removeprefix(word) for line in lines if line.startswith(word)), "")
 
 
 def _grid(ds: xr.Dataset) -> list[tuple[str, str]]:
@@ -109,6 +115,7 @@ def _provenance(ds: xr.Dataset, store: Store) -> list[tuple[str, str]]:
     entries = list(store.finished().values())
     found = [
         ("engine", str(ds.attrs.get("engine_fingerprint", "unknown"))),
+        *(("also runs of engines", ", ".join(_json(ds, name))) for name in ["accepted_engines"] if name in ds.attrs),
         ("schema version", str(ds.attrs.get("schema_version", "unknown"))),
         ("random numbers", str(ds.attrs.get("random_numbers", ""))),
         ("runs in the store", str(len(entries))),
@@ -146,7 +153,9 @@ def _again(ds: xr.Dataset, store: Store) -> str:
     if not room:
         return "<p>The dataset does not say.</p>"
     if room in ROOMS:
-        parts = [f"room = {_toml(room)}", f"store = {_toml(store.path.name)}", "", "[axes]"]
+        parts = [f"room = {_toml(room)}", f"store = {_toml(store.path.name)}"]
+        parts += [f"{CHOICE} = false"] if grid.get(CHOICE) is False else []
+        parts += ["", "[axes]"]
         parts += [f"{name} = {_toml(values)}" for name, values in axes.items()]
         held = [f"{name} = {_toml(value)}" for name, value in constants.items()]
         parts += ["", "[constants]", *held] if held else []
@@ -155,7 +164,8 @@ def _again(ds: xr.Dataset, store: Store) -> str:
         keywords = ", ".join(f"{name}={value!r}" for name, value in {**axes, **constants}.items())
         module, _, function = room.partition(":")
         parts = [f"from {module} import {function}", "from sweep import Grid, sweep", ""]
-        parts += [f"sweep(Grid({function}, {keywords}), store={store.path.name!r})"]
+        own = f", {CHOICE}=False" if grid.get(CHOICE) is False else ""
+        parts += [f"sweep(Grid({function}, {keywords}{own}), store={store.path.name!r})"]
         said = "In Python; runs what the store lacks."
     other = ds.attrs.get("engine_fingerprint") != FINGERPRINT
     said += f" The engine installed here is {FINGERPRINT}: it would run all of them anew." if other else ""

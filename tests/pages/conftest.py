@@ -1,6 +1,7 @@
 """A small run that jams, one that ends, and a browser to look at their pages with."""
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -18,6 +19,13 @@ RECORDED = {"every": 0.1, "contacts": True}
 def jam() -> xr.Dataset:
     """Fifty persons at 2.5 m/s: arches form and break."""
     return to_dataset(simulate(rooms.lin_room(v_d=2.5, N=50, seed=2, size=7.0, time_limit=12.0, **RECORDED)))
+
+
+@pytest.fixture(scope="session")
+def walking_on() -> xr.Dataset:
+    """The same crowd, who are felt for another metre beyond the door."""
+    scenario = rooms.lin_room(v_d=2.5, N=50, seed=2, size=7.0, time_limit=12.0, **RECORDED)
+    return to_dataset(simulate(replace(scenario, scene=rooms.square_room(7.0, 1.0, walk_on=1.0))))
 
 
 @pytest.fixture(scope="session")

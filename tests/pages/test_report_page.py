@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 
 from sweep import Grid, Store, gather, open_results, sweep
+from sweep.gridfile import read_gridfile
 from sweep.pages import report_page
 from sweep.pages.cells import cells_of
 from sweep.pages.svg import ticks
@@ -71,24 +72,26 @@ def test_a_sweep_reports_itself(store: Store) -> None:
     (store.runs / f"{next(iter(store.finished()))}.nc").unlink()
     grid = Grid("lin_room", v_d=[1.0, 1.4], seed=range(2), **TINY)
     gather(grid, store)
-    store.note_failure("0" * 64, "ValueError: <so> it went\n\nparameters: v_d = 1.4, seed = 1\n\nTraceback ...")
+    store.note_failure(
+        "0" * 64, "ValueError: <so> it went\n\nagain: jamsweep run x\n\nparameters: v_d = 1.4\n\nTraceback"
+    )
     page = report_page(open_results(store.path), store)
     said = " ".join(text_of(page).split())
     assert "3 of 4 runs done" in said
-    assert "v_d = 1.4, seed = 1 : ValueError: <so> it went" in said
+    assert "v_d = 1.4 : ValueError: <so> it went jamsweep run x" in said
     assert "<so>" not in page
     assert 'store = "results"' in said
     assert re.findall(r"""\b(?:src|href)\s*=|url\(|https?://""", page) == []
 
 
 def test_what_the_page_says_how_to_run_runs_the_same_grid(store: Store, tmp_path: Path) -> None:
-    from sweep.gridfile import read_gridfile
-
-    page = report_page(open_results(store.path), store)
-    file = tmp_path / "grid.toml"
-    file.write_text(html.unescape(page.split("<pre>")[1].split("</pre>")[0]))
-    grid, path = read_gridfile(file)
-    assert (grid.to_json(), path) == (store.grid.read_text(), "results")
+    own = Grid("lin_room", seed=range(2), common_random_numbers=False, v_d=1.2, **TINY)
+    for grid in (Grid.from_json(store.grid.read_text()), own):
+        page = report_page(sweep(grid, store=store.path, jobs=1), store)
+        file = tmp_path / "grid.toml"
+        file.write_text(html.unescape(page.split("<pre>")[1].split("</pre>")[0]))
+        described = read_gridfile(file)
+        assert (described.grid.to_json(), described.store) == (grid.to_json(), "results")
 
 
 def test_a_single_run_and_many_axes_have_pages(tmp_path: Path) -> None:
