@@ -145,6 +145,36 @@ def test_arches_are_those_that_the_measures_find(show: Show, name: str, request:
     assert 0 < found.clean.sum() < found.clean.size
 
 
+def test_who_has_crossed_the_door_holds_no_arch(show: Show) -> None:
+    """Two persons between the sides of a door; the second one crosses it between the samples and walks on."""
+    run = xr.Dataset(
+        {
+            "x": (("sample", "person"), [[4.9, 5.1], [4.9, 5.1]]),
+            "y": (("sample", "person"), [[2.25, 2.75], [2.25, 2.75]]),
+            "wall": (("wall", "end"), [[5.0, 0.0, 5.0, 2.0], [5.0, 3.0, 5.0, 5.0]]),
+            "door": (("door", "end"), [[5.0, 2.0, 5.0, 3.0]]),
+            "exit_time": ("exit", [0.05]),
+            "exit_person": ("exit", [1]),
+            "exit_x": ("exit", [5.0]),
+            "exit_y": ("exit", [2.75]),
+            "exit_door": ("exit", [0]),
+            **{
+                name: ("person", [value] * 2)
+                for name, value in {"radius": 0.3, "mass": 70.0, "v_d_person": 1.0}.items()
+            },
+            "row_size": ("sample", [3, 3]),
+            "contact_i": ("contact", [0, 0, 1] * 2),
+            "contact_j": ("contact", [1, -1, -2] * 2),
+            "outcome": 4,
+            "end_time": 0.1,
+        },
+        {"time": ("sample", [0.0, 0.1])},
+    )
+    arches = show(run).value("[0, 1].map((k) => player.arches.at(k))")
+    assert [at[0]["persons"] if at else [] for at in arches] == [[0, 1], []]
+    assert blocking_clusters(run).path_size.values.tolist() == [2, 0]
+
+
 def test_between_samples_persons_are_between_their_places(playing: Browser, jam: xr.Dataset) -> None:
     k = 10
     playing.value(f"player.seek({float(jam.time[k]) + 0.03})")
