@@ -43,7 +43,7 @@ def write_film(run: xr.Dataset, path: Path, rate: float = 4.0, colour: str = "sp
     require(there, "film", f"'{path}'", "needs ffmpeg, which is not installed", "install it, or write a .gif")
     begin, end = span(run)
     times = np.append(np.arange(begin, end, rate / FRAMES[kind]), end)
-    drawing = _Drawing(run, colour)
+    drawing = Drawing(run, colour)
 
     def write(temporary: Path) -> None:
         named = temporary.with_suffix(kind)  # writers tell formats by endings
@@ -65,8 +65,14 @@ def _writer(kind: str) -> AbstractMovieWriter:
     return FFMpegWriter(fps=FRAMES[kind], codec="h264", extra_args=["-pix_fmt", "yuv420p", "-crf", "20"])
 
 
-class _Drawing:
-    """A figure of the run that can be set to any time."""
+class Drawing:
+    """A figure of the run that can be set to any time.
+
+    Parameters
+    ----------
+    run : one run with samples
+    colour : "speed" or "force"
+    """
 
     def __init__(self, run: xr.Dataset, colour: str) -> None:
         self.run, self.contacts = run, contacts_of(run)
@@ -101,6 +107,7 @@ class _Drawing:
         (self.mark,) = curve.plot([begin], [run.sizes["person"]], "o", color="black")
 
     def show(self, time: float) -> None:
+        """Set it to a time, s."""
         run = self.run
         k = int(np.searchsorted(run.time.values, time + 1e-9, side="right")) - 1
         x, y = self._places(k, time)

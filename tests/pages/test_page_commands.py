@@ -5,12 +5,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 from matplotlib.animation import FFMpegWriter
 from PIL import Image
 
 from engine import rooms, simulate
 from sweep import Grid, sweep, write_run
 from sweep.cli import main
+from sweep.pages.film import Drawing
 
 SMALL = {"N": 5, "size": 4.0, "time_limit": 2.0}
 
@@ -85,6 +87,22 @@ def test_a_gif_shows_the_run_from_begin_to_end(file: Path, tmp_path: Path, capsy
         last = np.asarray(picture.convert("RGB")).astype(int)
     assert (np.abs(first - last).max(axis=-1) > 60).sum() > 200
     assert sorted(path.name for path in tmp_path.iterdir()) == ["run.gif", "run.nc"]
+
+
+def test_a_film_shows_those_who_are_there_between_their_places(walk: xr.Dataset) -> None:
+    drawing = Drawing(walk, "speed")
+    for k, part in ((20, 0.04), (int(walk.sizes["sample"] * 0.7), 0.06)):
+        time = float(walk.time[k]) + part
+        drawing.show(time)
+        x = np.ma.filled(drawing.discs.get_offsets().astype(float), np.nan)[:, 0]
+        left = walk.exit_person.values[walk.exit_time.values <= time]
+        assert np.flatnonzero(np.isnan(x)).tolist() == sorted(left.tolist())
+        before, after = walk.x.values[k], walk.x.values[k + 1]
+        both = np.isfinite(before) & np.isfinite(after)
+        assert x[both] == pytest.approx((before + part / 0.1 * (after - before))[both])
+    assert left.size > 0
+    drawing.show(float(walk.end_time))
+    assert np.isnan(np.ma.filled(drawing.discs.get_offsets().astype(float), np.nan)).all()
 
 
 @pytest.mark.skipif(not FFMpegWriter.isAvailable(), reason="no ffmpeg on this machine: apt-get install ffmpeg")
