@@ -32,7 +32,9 @@ def parameters_of(run: xr.Dataset) -> Pairs:
     scenario = _scenario(run)
     laws = scenario.get("model", {})
     described = [(kind, _spoken(law)) for kind, law in laws.items() if isinstance(law, dict) and kind != "is"]
-    rest = [(part, _spoken(scenario[part])) for part in ("numerics", "stopping", "record") if part in scenario]
+    rest = [
+        (part, _spoken(scenario[part] | {"is": ""})) for part in ("numerics", "stopping", "record") if part in scenario
+    ]
     return [*own, *((kind.replace("_", " "), text) for kind, text in described), *rest, ("seed", _seed(scenario))]
 
 
@@ -77,7 +79,7 @@ def _spoken(part: Mapping[str, Any]) -> str:
     """A part of a scenario: "Hertz: k_n 3.56e+06 Pa, g_n 0.8"."""
     values = ", ".join(f"{name} {_short(value)}" for name, value in part.items() if name != "is")
     kind = str(part.get("is", ""))
-    return f"{kind}: {values}" if values else kind
+    return f"{kind}: {values}" if values and kind else values or kind
 
 
 def _short(value: Any) -> str:

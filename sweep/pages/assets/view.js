@@ -28,7 +28,7 @@ class View {
   }
 
   restyle() {
-    const names = ["paper", "ink", "soft", "wall", "door", "arch", "touch", "casing", "outline", "chosen"];
+    const names = ["paper", "ink", "wall", "door", "arch", "touch", "casing", "outline", "chosen"];
     this.style = Object.fromEntries(names.map((name) => [name, styled(`--${name}`)]));
   }
 
@@ -235,16 +235,19 @@ class View {
     c.font = "13px system-ui, sans-serif";
     c.textAlign = "left";
     c.textBaseline = "bottom";
-    c.fillStyle = this.style.paper;
-    c.fillRect(x - 8, y - 26, length * this.scale + 16, 34);
-    c.strokeStyle = c.fillStyle = this.style.soft;
-    c.lineWidth = 2;
-    c.beginPath();
-    c.moveTo(x, y - 5);
-    c.lineTo(x, y);
-    c.lineTo(x + length * this.scale, y);
-    c.lineTo(x + length * this.scale, y - 5);
-    c.stroke();
+    c.lineJoin = "round";
+    for (const [colour, width] of [[this.style.paper, 6], [this.style.ink, 2]]) {
+      c.strokeStyle = colour;
+      c.lineWidth = width;
+      c.beginPath();
+      c.moveTo(x, y - 5);
+      c.lineTo(x, y);
+      c.lineTo(x + length * this.scale, y);
+      c.lineTo(x + length * this.scale, y - 5);
+      c.stroke();
+      if (width > 2) c.strokeText(`${length} m`, x + 6, y - 4);
+    }
+    c.fillStyle = this.style.ink;
     c.fillText(`${length} m`, x + 6, y - 4);
   }
 }
