@@ -13,16 +13,16 @@ import click
 
 from engine import FINGERPRINT, OUTCOMES, BadInput
 from engine.errors import require
+from sweep.commands.export import export
+from sweep.commands.pages import report, view
+from sweep.commands.run import run
+from sweep.commands.store import code_option, compact, gather, say, status, verify
 from sweep.errors import DamagedFile, SweepStopped
-from sweep.export_command import export
 from sweep.gridfile import read_gridfile, read_until
-from sweep.page_commands import report, view
 from sweep.report import tell
-from sweep.run_command import run
 from sweep.running.backends import BACKENDS, DASK, LOKY
 from sweep.status import status_of
 from sweep.storage.store import Store
-from sweep.store_commands import code_option, compact, gather, say, status, verify
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -10,7 +10,7 @@ from engine import rooms, simulate
 from engine.rooms import ROOMS
 from sweep import open_results, read_run
 from sweep.cli import main
-from sweep.run_command import parameter_words
+from sweep.commands.run import parameter_words
 from tests.sweep.tiny import TINY
 
 SMALL = ["--N", "5", "--size", "4", "--time-limit", "2"]

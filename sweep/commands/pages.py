@@ -3,18 +3,17 @@
 import math
 import webbrowser
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
-import xarray as xr
 
 from engine.errors import BadInput, require
 from sweep.errors import DamagedFile
-from sweep.pages import player_page, report_page, write_film
-from sweep.pages.motion import check_playable
-from sweep.results import open_results
 from sweep.storage.durable import replace_durably, require_writable
-from sweep.storage.reading import read_run
 from sweep.storage.store import Store
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 SMOOTH = 3000  # samples that a page holds, at most, where nothing else is said
 path_type = click.Path(dir_okay=False, path_type=Path)
@@ -47,6 +46,8 @@ def view(
     jamsweep view run.nc --open
     jamsweep view run.nc --mp4 run.mp4
     """  # noqa: D301  click reads \b as a character
+    from sweep.pages import player_page, write_film  # what needs xarray stands in the functions: --help answers at once
+
     run = _run_in(file)
     films = [film for film in (mp4, gif) if film is not None]
     for film, ending in ((mp4, ".mp4"), (gif, ".gif")):
@@ -70,12 +71,18 @@ def report(store: Path, output: Path | None, show: bool) -> None:
     \b
     jamsweep report results/mine -o mine.html
     """  # noqa: D301  click reads \b as a character
+    from sweep import open_results
+    from sweep.pages import report_page
+
     kept = Store(store)
     _write_page(report_page(open_results(kept.path), kept), output or kept.path / "report.html", show)
 
 
-def _run_in(file: Path) -> xr.Dataset:
+def _run_in(file: Path) -> "xr.Dataset":
     """The run in a file, as a bad input if it cannot be read."""
+    from sweep import read_run
+    from sweep.pages.motion import check_playable
+
     try:
         run = read_run(file)
         check_playable(run, str(file))
@@ -89,7 +96,7 @@ def _run_in(file: Path) -> xr.Dataset:
     return run
 
 
-def _stride(run: xr.Dataset, every: int | None) -> int:
+def _stride(run: "xr.Dataset", every: int | None) -> int:
     if every is None:
         stride = math.ceil(run.sizes["sample"] / SMOOTH)
         if stride > 1:

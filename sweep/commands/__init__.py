@@ -1,0 +1,1 @@
+"""The subcommands of `jamsweep`, one file for those of a kind."""
