@@ -245,8 +245,9 @@ def _parts(integrator, model, rules, overlap, speed):
     )
     longest = min(min(limits[0], limits[1]), limits[2])
     if speed > 0.0:
-        room = max(rules.deepest - overlap - speed * rules.dt, LEAST_ROOM * rules.deepest)
-        longest = min(longest, STRIDE * min(rules.deepest, 2.0 * room) / speed)
+        left = rules.deepest - overlap
+        room = max(left - speed * rules.dt, LEAST_ROOM * rules.deepest)
+        longest = min(longest, min(STRIDE * min(rules.deepest, 2.0 * room), left) / speed)
     parts = 1
     while parts < MOST_PARTS and rules.dt > parts * longest:
         parts *= 2

@@ -101,7 +101,7 @@ def notes() -> list[str]:
         "In every run: nothing is nan or infinite, nobody's way crosses a wall, nobody is deeper in another than the "
         "smallest radius, everybody leaves once and by an exit, the outcome says what is so; what is refused is "
         "refused in one line.",
-        f"Energy of undriven crowds, at every step: where nothing is lost it may drift by {LOSSLESS_DRIFT:g} "
+        f"Energy of undriven crowds, at every step: where nothing is lost it may drift by {LOSSLESS_DRIFT:.3g} "
         f"(dt/limit)^2 of itself, and where there is friction or damping rise by {PASSIVE_RISE:g} dt/limit (with "
         f"integrators of first order by {FIRST_ORDER_SWING:g} dt/limit in both cases); work that pressing does on "
         "Mindlin's spring is counted. Momentum without walls "
