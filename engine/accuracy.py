@@ -42,7 +42,7 @@ def numerics_for(
     Parameters
     ----------
     numerics : "accurate", from `accuracy`; or "paper"
-    accuracy : "2%", bias of the statistics (mean clearance time, blocked share, delays);
+    accuracy : "2%", bias of the statistics (mean clearance time, blocked share, mean delay);
         "1mm" or "0.1mm", root mean square error of the places before chaos
     paper : what the paper did
     every : sampling interval, which the step must divide, s; 0: none
