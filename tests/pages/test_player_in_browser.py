@@ -211,6 +211,16 @@ def test_a_sharp_screen_and_another_size_get_their_pixels(playing: Browser) -> N
     assert whole
 
 
+def test_another_resolution_alone_gets_its_pixels(playing: Browser) -> None:
+    """As a window moves to another screen: the size in CSS pixels stays."""
+    size = "(({width, clientWidth}) => [width, clientWidth])(document.getElementById('room'))"
+    metrics = {"width": 900, "height": 700, "mobile": False}
+    for ratio in (1, 2, 3, 1):
+        playing.call("Emulation.setDeviceMetricsOverride", **metrics, deviceScaleFactor=ratio)
+        playing.wait(f"{size}[0] === {ratio} * {size}[1]")
+    playing.call("Emulation.clearDeviceMetricsOverride")
+
+
 def test_every_control_has_a_name(playing: Browser) -> None:
     nodes = playing.call("Accessibility.getFullAXTree")["nodes"]
     roles = ("button", "slider", "combobox", "radio", "checkbox", "image")

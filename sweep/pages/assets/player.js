@@ -17,6 +17,8 @@ class Player {
     this.connect();
     this.paint(dark ? "dark" : "light");
     new ResizeObserver(() => this.fit()).observe(element("room").parentElement);
+    // Another screen's resolution may change no size, and then no browser-independent event tells of it.
+    setInterval(() => window.devicePixelRatio !== this.view.ratio && this.fit(), 500);
     this.seekShut(0);
     if (!this.still) this.play(true);
   }
