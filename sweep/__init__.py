@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from sweep.storage.reading import read_run
     from sweep.storage.runfile import write_run
     from sweep.storage.verify import verify
-    from sweep.until import Until, sweep_until
+    from sweep.until import Until
 
 # What needs xarray is imported when it is first asked for, so that `jamsweep status` answers at once.
 _LATER = {
@@ -32,7 +32,6 @@ _LATER = {
     "open_results": "sweep.results",
     "read_run": "sweep.storage.reading",
     "sweep": "sweep.runner",
-    "sweep_until": "sweep.until",
     "to_dataset": "sweep.storage.datasets",
     "verify": "sweep.storage.verify",
     "write_run": "sweep.storage.runfile",
@@ -50,7 +49,6 @@ __all__ = [
     "open_results",
     "read_run",
     "sweep",
-    "sweep_until",
     "to_dataset",
     "verify",
     "write_run",

@@ -132,12 +132,11 @@ def sweep(
     manner["backend"] = backend or (DASK if manner["scheduler"] else LOKY)
     manner["on_code_change"] = choice
     goals = read_until(file)
+    ds = importlib.import_module(RUNNER).sweep(described.grid, kept, jobs, until=goals, **manner)
     if goals is None:
-        _finish(importlib.import_module(RUNNER).sweep(described.grid, kept, jobs, **manner), kept.dataset)
+        _finish(ds, kept.dataset)
         return
-    until = importlib.import_module(UNTIL)
-    ds = until.sweep_until(described.grid, kept, goals, jobs, **manner)
-    click.echo(until.account(ds))
+    click.echo(importlib.import_module(UNTIL).account(ds))
     _finish(ds, kept.dataset, meant=int((ds.seeds_given.max() - ds.seeds_given).sum()))
 
 

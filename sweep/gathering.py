@@ -53,7 +53,7 @@ def gather(grid: Grid, store: Path | str | Store, on_code_change: str = RERUN) -
     -------
     Dataset with one dimension and coordinate for each axis, in the order of the grid, and last `exit`, the
     rank of leaving from 1; constants are scalar coordinates. Where a run has no such exit, `exit_time` is nan
-    and `exit_person` -1; where there is no run, `outcome` is 0, "missing".
+    and `exit_person` -1; where there is no run, or the cell has no such seed, `outcome` is 0, "missing".
 
     Raises
     ------
@@ -79,7 +79,8 @@ def collect(grid: Grid, store: Path | str | Store, on_code_change: str = RERUN) 
             return Gathered(open_results(store.path), 0)
     rows, aside = _rows(wanted, served, store)
     whole = Serving({key: entry for key, entry in served.entries.items() if rows[key]}, served.stale)
-    ds = _dataset(grid, [rows[w.key] for w in wanted], whole)
+    of = {tuple(point.values()): rows[w.key] for w, point in zip(wanted, grid.points(), strict=True)}
+    ds = _dataset(grid, [of.get(tuple(point.values())) for point in grid.product()], whole)
     return Gathered(_kept(ds.assign_attrs({CONTENT: whole.content(wanted, grid.to_json())}), store), aside)
 
 

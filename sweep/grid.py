@@ -1,5 +1,6 @@
 """A grid: axes and constants over the keywords of a room, each point a scenario."""
 
+import copy
 import hashlib
 import inspect
 import itertools
@@ -18,9 +19,10 @@ from engine.rooms import ROOMS
 
 Scalar = bool | int | float | str
 Point = dict[str, Scalar]
+Cell = tuple[Scalar, ...]
 Room = Callable[..., Scenario]
 
-SEED, CHOICE = "seed", "common_random_numbers"
+SEED, CHOICE, SEEDS = "seed", "common_random_numbers", "seeds_of_cells"
 KINDS = {float: "a number", int: "a whole number", bool: "true or false", str: "a word"}
 
 
@@ -41,6 +43,7 @@ class Grid:
     axes : name -> tuple of values, in the order given
     constants : name -> value
     common_random_numbers : as given
+    seeds_of_cells : cell (values of the axes but `seed`, in their order) -> number of seeds; None: each has all
 
     Raises
     ------
@@ -64,6 +67,23 @@ class Grid:
         self.axes: Mapping[str, tuple[Scalar, ...]] = MappingProxyType(axes)
         self.constants: Mapping[str, Scalar] = MappingProxyType(constants)
         self.common_random_numbers = _choice(common_random_numbers, self)
+        self.seeds_of_cells: Mapping[Cell, int] | None = None
+
+    def over(self, **axes: Any) -> "Grid":
+        """The same grid with other values of some axes."""
+        return Grid(
+            self.room, common_random_numbers=self.common_random_numbers, **{**self.axes, **axes, **self.constants}
+        )
+
+    def first_seeds(self, numbers: Mapping[Cell, int]) -> "Grid":
+        """The same grid, of which each cell has only the first so many seeds; those not named have none."""
+        part = copy.copy(self)
+        part.seeds_of_cells = MappingProxyType(dict(numbers))
+        return part
+
+    def cell(self, point: Point) -> Cell:
+        """What runs that differ only in their seed share: values of the other axes."""
+        return tuple(point[name] for name in self.axes if name != SEED)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -72,7 +92,7 @@ class Grid:
 
     def __len__(self) -> int:
         """Number of points."""
-        return math.prod(self.shape)
+        return math.prod(self.shape) if self.seeds_of_cells is None else sum(self.seeds_of_cells.values())
 
     def __repr__(self) -> str:
         """The room and the size of each axis."""
@@ -92,6 +112,14 @@ class Grid:
 
     def points(self) -> Iterator[Point]:
         """The axes' values at each point, the last axis fastest."""
+        if self.seeds_of_cells is None:
+            yield from self.product()
+            return
+        numbers, rank = self.seeds_of_cells, {seed: k for k, seed in enumerate(self.axes[SEED])}
+        yield from (point for point in self.product() if rank[point[SEED]] < numbers.get(self.cell(point), 0))
+
+    def product(self) -> Iterator[Point]:
+        """Every combination of the axes' values, also those that are no points since their cell has fewer seeds."""
         for values in itertools.product(*self.axes.values()):
             yield dict(zip(self.axes, values, strict=True))
 
@@ -119,10 +147,17 @@ class Grid:
         return int(given.get(SEED, self._known[SEED].default))
 
     def to_json(self) -> str:
-        """Room, axes, constants and the choice of random numbers as JSON."""
-        axes = {name: list(values) for name, values in self.axes.items()}
-        own = {} if self.common_random_numbers else {CHOICE: False}
-        return json.dumps({"room": self.name, "axes": axes, "constants": dict(self.constants)} | own)
+        """Room, axes, constants, the choice of random numbers, and unequal numbers of seeds as JSON."""
+        plain: dict[str, Any] = {
+            "room": self.name,
+            "axes": {name: list(values) for name, values in self.axes.items()},
+            "constants": dict(self.constants),
+        }
+        if not self.common_random_numbers:
+            plain[CHOICE] = False
+        if self.seeds_of_cells is not None:
+            plain[SEEDS] = [[*cell, number] for cell, number in self.seeds_of_cells.items()]
+        return json.dumps(plain)
 
     @staticmethod
     def from_json(text: str) -> "Grid":
@@ -130,7 +165,7 @@ class Grid:
         plain = json.loads(text)
         grid = Grid.__new__(Grid)
         grid._describe(_room(plain["room"]), plain.get(CHOICE, True), {**plain["axes"], **plain["constants"]})
-        return grid
+        return grid.first_seeds({tuple(cell): number for *cell, number in plain[SEEDS]}) if SEEDS in plain else grid
 
     def _own_seed(self, parameters: Point) -> Point:
         """The seed of a cell that has random numbers of its own; nothing where they are common."""

@@ -1,22 +1,20 @@
 """The runner: finds what is missing in a store and has it run."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import xarray as xr
 
 from engine.errors import require
-from sweep.errors import DamagedFile
-from sweep.gathering import collect
 from sweep.grid import Grid
-from sweep.report import tell
 from sweep.running.backends import chosen
-from sweep.running.execution import Execution, Manner
+from sweep.running.completion import Way, complete, opened
+from sweep.running.execution import Manner
 from sweep.running.limits import limits_of
-from sweep.running.plan import Plan, durations_of, longest_first, not_held_back, plan_of
 from sweep.storage.serving import RERUN
 from sweep.storage.store import Store
-
-ATTEMPTS = 3  # at a sweep whose files are damaged as soon as they are written
+from sweep.until import Until, sweep_until
 
 
 def sweep(
@@ -25,6 +23,7 @@ def sweep(
     jobs: int = 2,
     progress: bool = True,
     *,
+    until: Until | str | Mapping[str, Any] | None = None,
     on_code_change: str = RERUN,
     backend: str | None = None,
     scheduler: str | None = None,
@@ -42,6 +41,9 @@ def sweep(
     jobs : number of worker processes; 1 runs in this process, if no back end is named and nothing limits a run. No
         value depends on it.
     progress : whether to say how far it is; failing runs are always said
+    until : gives each cell only as many of the grid's seeds as its interval needs, in rounds, see
+        `sweep.until.sweep_until`: a rule, or its goals as a table or in words, "clearance_time=5%, blocked_share=0.1,
+        budget=2000", see `studies.until.rules.until_of`
     on_code_change : what becomes of runs that another state of the engine made: "rerun" runs them anew, "accept" takes
         them as they are (`accepted_engines` of the dataset says how many), "error" stops
     backend : "loky" (worker processes of this machine), "serial" (this process) or "dask"
@@ -76,28 +78,7 @@ def sweep(
     require(whole, "jobs", repr(jobs), "is not a whole number above 0", "give a number of workers")
     limits = limits_of(timeout, memory_limit)
     manner = Manner(chosen(backend, jobs, scheduler, limits), jobs, scheduler, limits, fail_fast, progress)
-    store = Store(store)
-    store.make()
-    store.sweep_leftovers()
-    torn = store.set_torn_aside()
-    if torn:
-        tell(f"{len(torn)} run file{' is' if len(torn) == 1 else 's are'} damaged: set aside (.corrupt) and run again")
-    store.note_grid(grid.to_json())
-    for _ in range(ATTEMPTS):
-        _run_missing(plan_of(grid, store, on_code_change), grid, store, manner, retry)
-        gathered = collect(grid, store, on_code_change)
-        if not gathered.aside:  # damaged runs that gathering met are run again
-            return gathered.ds
-    raise DamagedFile(f"store '{store.path}' damages what is written to it: check its disk")
-
-
-def _run_missing(plan: Plan, grid: Grid, store: Store, manner: Manner, retry: bool) -> None:
-    if manner.shown:
-        tell(str(plan))
-    tasks = plan.missing if retry else not_held_back(plan.missing, store, manner.limits)
-    aside = len(plan.missing) - len(tasks)
-    if aside:
-        tell(f"{aside} of them set aside, see {store.failed}: retry=True (--retry) tries them again")
-    if tasks:
-        durations = durations_of(plan, grid, store)
-        Execution(longest_first(tasks, durations), durations, grid, store, manner).run()
+    way = Way(manner, on_code_change, retry)
+    if until is not None:
+        return sweep_until(grid, Store(store), until, way)
+    return complete(grid, opened(Store(store)), way)

@@ -1,28 +1,23 @@
 """Seeds where they are needed: a sweep in rounds that gives more of them to the cells that are least certain."""
 
 import importlib
+import itertools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from engine import Scenario
 from engine.errors import BadInput, require
-from sweep.gathering import gather
-from sweep.grid import Grid, Point, Scalar, named
+from sweep.grid import SEED, Cell, Grid, Point, Scalar
 from sweep.report import tell
-from sweep.runner import sweep
-from sweep.schema import GATHERED
+from sweep.running.completion import Way, complete, opened
 from sweep.storage.store import Store
 
-SEED = "seed"
 RULES = "studies.until.rules"  # looked up by name at run time, as studies are: nothing here builds on it
 Excess = Callable[[xr.Dataset], xr.DataArray]
 Refine = Callable[[xr.Dataset], Sequence[Point]]
-Cell = tuple[Scalar, ...]  # values of the axes but `seed`
 
 
 @dataclass(frozen=True)
@@ -58,14 +53,7 @@ class Until:
             require(whole, f"until: {name}", repr(value), f"is not a whole number of {low} or more", "give one")
 
 
-def sweep_until(
-    grid: Grid,
-    store: Path | str | Store,
-    until: Until | str | Mapping[str, Any],
-    jobs: int = 2,
-    progress: bool = True,
-    **manner: Any,
-) -> xr.Dataset:
+def sweep_until(grid: Grid, store: Store, until: Until | str | Mapping[str, Any], way: Way) -> xr.Dataset:
     """Run as many seeds in each cell of a grid as its interval needs.
 
     In each round every cell that is not settled gets the next `batch` seeds of the grid's axis `seed`, in their
@@ -75,17 +63,15 @@ def sweep_until(
     Parameters
     ----------
     grid : its axis `seed` is the supply: no cell gets more seeds than it has
-    store : folder of the runs; runs that it holds are not run again
-    until : a rule; or its goals as a table or in words, "clearance_time=5%, blocked_share=0.1, budget=2000", see
-        `studies.until.rules.until_of`
-    jobs, progress, manner : as of `sweep`
+    store : of the runs; runs that it holds are not run again
+    until, way : as of `sweep.sweep`
 
     Returns
     -------
     Dataset as `gather` gives it, "missing" where a cell was not given that seed; with `seeds_given` and `excess`
     (axes but seed...), and the attributes `runs_given`; `runs_uniform`, cells times the most seeds of a cell,
     what a grid with as many seeds in all cells takes; and `cells_open`, cells that the budget or the supply left
-    short of the goal. `dataset.nc` holds what the store has of the same grid.
+    short of the goal.
 
     Raises
     ------
@@ -93,26 +79,23 @@ def sweep_until(
         If the grid has no axis `seed` or too few seeds, the budget does not reach for the first round, or the
         words are none.
     SweepStopped
-        See `sweep`; finished runs are kept, and the same call goes on from there.
+        See `sweep.sweep`; finished runs are kept, and the same call goes on from there.
     """
     until = until if isinstance(until, Until) else _from_words(until)
     _check(grid, until)
-    store, cells = Store(store), Cells(grid, until.least)
-    try:
-        while True:
-            ds, excess = cells.run(store, until.excess, jobs=jobs, progress=progress, **manner)
-            wanted = cells.wanting(excess, until)
-            if not wanted and until.refine is not None:
-                cells.add(until.refine(ds), until)
-                wanted = {cell: until.least for cell, seeds in cells.seeds.items() if not seeds}
-            if not wanted:
-                return _accounted(ds, excess, cells)
-            cells.give(wanted)
-            if progress:
-                tell(f"{cells.runs} runs: {len(wanted)} of {len(cells.seeds)} cells get more seeds")
-    finally:
-        store.make()
-        store.note_grid(cells.whole().to_json())
+    store, cells = opened(store), Cells(grid, until.least)
+    while True:
+        ds = cells.counted(complete(cells.given(), store, way))
+        excess = cells.excess(ds, until.excess)
+        wanted = cells.wanting(excess, until)
+        if not wanted and until.refine is not None:
+            cells.add(until.refine(ds), until)
+            wanted = {cell: until.least for cell, seeds in cells.seeds.items() if not seeds}
+        if not wanted:
+            return _accounted(ds, excess, cells)
+        cells.give(wanted)
+        if way.manner.shown:
+            tell(f"{cells.runs} runs: {len(wanted)} of {len(cells.seeds)} cells get more seeds")
 
 
 class Cells:
@@ -122,37 +105,28 @@ class Cells:
     ----------
     axes : name -> values, without `seed`
     seeds : cell -> number of seeds; they are the first ones of the supply
-    done : the same when runs were last made
     """
 
     def __init__(self, grid: Grid, least: int) -> None:
         self.grid, self.supply = grid, grid.axes[SEED]
         self.axes: dict[str, tuple[Scalar, ...]] = {n: v for n, v in grid.axes.items() if n != SEED}
-        points = Grid(grid.room, **{**grid.axes, SEED: self.supply[:1]}, **grid.constants).points()
-        self.seeds: dict[Cell, int] = {self._cell(point): least for point in points}
-        self.done: dict[Cell, int] = dict.fromkeys(self.seeds, 0)
+        points = grid.over(**{SEED: self.supply[:1]}).points()
+        self.seeds: dict[Cell, int] = {grid.cell(point): least for point in points}
 
     @property
     def runs(self) -> int:
         """Number of runs given."""
         return sum(self.seeds.values())
 
-    def whole(self) -> Grid:
-        """The grid of all cells with the most seeds that any has."""
-        seeds = self.supply[: max(self.seeds.values())]
-        axes = {name: seeds if name == SEED else self.axes[name] for name in self.grid.axes}
-        return Grid(self.grid.room, **axes, **self.grid.constants)
+    def given(self) -> Grid:
+        """The grid of all cells, with the seeds that each has been given."""
+        whole = self.grid.over(**self.axes, **{SEED: self.supply[: max(self.seeds.values())]})
+        return whole.first_seeds(self.seeds)
 
-    def run(self, store: Store, excess: Excess, **manner: Any) -> tuple[xr.Dataset, xr.DataArray]:
-        """Run what was given last; the dataset of all that is given and nothing else, and the excess of its cells."""
-        if self.done != self.seeds:
-            sweep(self._rows(), store, **manner)
-        self.done = dict(self.seeds)
-        ds = gather(self.whole(), store)
-        given = self._number_given(ds)
-        ds = only(ds, xr.DataArray(np.arange(ds.sizes[SEED]), dims=SEED) < given)
-        found = excess(ds).transpose(*self.axes)
-        return ds.assign(seeds_given=given), found.where(found.notnull(), np.inf)
+    def excess(self, ds: xr.Dataset, rule: Excess) -> xr.DataArray:
+        """How far each cell is from its goal: infinitely far where nothing is known."""
+        found = rule(ds).transpose(*self.axes)
+        return found.where(found.notnull(), np.inf)
 
     def wanting(self, excess: xr.DataArray, until: Until) -> dict[Cell, int]:
         """The cells short of the goal that supply and budget reach, the least certain first, and how many seeds."""
@@ -175,47 +149,22 @@ class Cells:
         for point in points:
             require(set(point) == set(self.axes), "refined cell", point, "does not name each axis", "name them all")
             room = until.budget is None or self.runs + self._bare() * until.least + until.least <= until.budget
-            if room and self._cell(point) not in self.seeds:
-                self.seeds[self._cell(point)] = 0
+            if room and self.grid.cell(point) not in self.seeds:
+                self.seeds[self.grid.cell(point)] = 0
                 self.axes |= {name: _with(self.axes[name], value) for name, value in point.items()}
 
     def _bare(self) -> int:
         return sum(not seeds for seeds in self.seeds.values())
 
-    def _rows(self) -> Grid:
-        """Each new run as one value of one axis: cells with unequal numbers of seeds are no product of axes."""
-        points = [
-            dict(zip(self.axes, cell, strict=True)) | {SEED: seed}
-            for cell, number in self.seeds.items()
-            for seed in self.supply[self.done.get(cell, 0) : number]
-        ]
-        by_words = {named(point): point for point in points}
-        grid = self.grid
-
-        def one_of_unequal_cells(run: str) -> Scenario:
-            return grid.scenario(by_words[run])
-
-        return Grid(one_of_unequal_cells, run=list(by_words))
-
-    def _cell(self, point: Point) -> Cell:
-        return tuple(point[name] for name in self.axes)
-
     def _at(self, values: xr.DataArray, cell: Cell) -> float:
         return float(values.sel(dict(zip(self.axes, cell, strict=True))))
 
-    def _number_given(self, ds: xr.Dataset) -> xr.DataArray:
-        coords = {name: ds[name] for name in self.axes}
+    def counted(self, ds: xr.Dataset) -> xr.Dataset:
+        """A dataset with the seeds given to each cell."""
         shape = [ds.sizes[name] for name in self.axes]
-        given = xr.DataArray(np.zeros(shape, dtype=np.int64), coords, list(self.axes))
-        for cell, number in self.seeds.items():
-            given.loc[dict(zip(self.axes, cell, strict=True))] = number
-        return given.assign_attrs(units="1", long_name="seeds given to the cell")
-
-
-def only(ds: xr.Dataset, given: xr.DataArray) -> xr.Dataset:
-    """The dataset as if the store held only the runs that are `given` (axes...) bool."""
-    pads = {v.name: np.dtype(v.dtype).type(v.pad) for v in GATHERED if v.name in ds}
-    return ds.assign({name: ds[name].where(given, pad).transpose(*ds[name].dims) for name, pad in pads.items()})
+        numbers = np.array([self.seeds.get(cell, 0) for cell in itertools.product(*self.axes.values())], np.int64)
+        about = {"units": "1", "long_name": "seeds given to the cell"}
+        return ds.assign(seeds_given=(list(self.axes), numbers.reshape(shape), about))
 
 
 def account(ds: xr.Dataset) -> str:

@@ -2,7 +2,6 @@
 
 from functools import cached_property
 from pathlib import Path
-from typing import NamedTuple
 
 import pandas as pd
 import xarray as xr
@@ -10,9 +9,10 @@ from joblib import Parallel, delayed, parallel_config
 
 from engine import Scenario, cache, rooms
 from engine.errors import require
-from studies import measures
+from studies import measures, swept
 from studies.published import parisi2005 as paper
-from sweep import Grid, Store, SweepStopped, read_run, sweep
+from studies.swept import Swept
+from sweep import Grid, Store, SweepStopped, read_run
 from sweep.schema import PARAMETERS, run_key
 from sweep.storage.durable import replace_durably
 
@@ -29,47 +29,40 @@ def wide_room(L: float, seed: int = 0) -> Scenario:
     return rooms.parisi_room(paper.DOORS_V_D, paper.DOORS_N[L], seed, L, every=EVERY, contacts=True, state="places")
 
 
-class Swept(NamedTuple):
-    """A grid and the folder of its runs."""
-
-    grid: Grid
-    folder: Path
-
-
-def grids(quick: bool, folder: Path = FOLDER) -> dict[str, Swept]:
+def grids(quick: bool) -> dict[str, Grid]:
     """The three sweeps, thinned or as the paper has them."""
     seeds = range(QUICK_SEEDS if quick else paper.RUNS)
     v_d = QUICK_V_D if quick else list(paper.V_D)
     listed = [v for v in v_d if v in paper.EVACUATION_TIME]
     recorded = {"every": EVERY, "contacts": True, "state": "places"}
     return {
-        "speeds": Swept(Grid(rooms.parisi_room, v_d=v_d, seed=seeds, **recorded), folder / "speeds"),
-        "doors": Swept(Grid(wide_room, L=QUICK_L if quick else list(paper.DOORS_N), seed=seeds), folder / "doors"),
-        "printed": Swept(Grid(rooms.parisi_room, v_d=listed, seed=seeds, reading="printed"), folder / "printed"),
+        "speeds": Grid(rooms.parisi_room, v_d=v_d, seed=seeds, **recorded),
+        "doors": Grid(wide_room, L=QUICK_L if quick else list(paper.DOORS_N), seed=seeds),
+        "printed": Grid(rooms.parisi_room, v_d=listed, seed=seeds, reading="printed"),
     }
 
 
-class Sweeps:
+class Sweeps(swept.Sweeps):
     """Facts of the sweeps, run and counted when they are first asked for, and kept on disk."""
 
     def __init__(self, quick: bool = False, jobs: int = 2, folder: Path = FOLDER) -> None:
-        self.quick, self.jobs, self.folder = quick, jobs, folder
-        self.grids = grids(quick, folder)
+        super().__init__(grids(quick), folder, jobs)
+        self.quick, self.folder = quick, folder
 
     @cached_property
     def speeds(self) -> xr.Dataset:
         """Exits over v_d and seed."""
-        return self._swept("speeds")
+        return self.swept("speeds")
 
     @cached_property
     def doors(self) -> xr.Dataset:
         """Exits over L and seed."""
-        return self._swept("doors")
+        return self.swept("doors")
 
     @cached_property
     def printed(self) -> xr.Dataset:
         """Exits over v_d and seed, with A = 1000 N."""
-        return self._swept("printed")
+        return self.swept("printed")
 
     @cached_property
     def speed_counts(self) -> xr.Dataset:
@@ -83,18 +76,13 @@ class Sweeps:
 
     def run(self, v_d: float, seed: int) -> xr.Dataset:
         """One recorded run of the sweep over v_d."""
-        grid, folder = self.grids["speeds"]
-        self.speeds  # noqa: B018  has it run
-        return read_run(Store(folder).file(run_key(grid.scenario({"v_d": v_d, "seed": seed}))))
-
-    def _swept(self, name: str) -> xr.Dataset:
-        return sweep(*self.grids[name], jobs=self.jobs)
+        return self.recorded("speeds", {"v_d": v_d, "seed": seed})
 
     def _counts(self, name: str) -> Path:
         return self.grids[name].folder / f"counts{'-quick' * self.quick}.nc"
 
 
-def counted(ds: xr.Dataset, swept: Swept, jobs: int, path: Path) -> xr.Dataset:
+def counted(ds: xr.Dataset, runs: Swept, jobs: int, path: Path) -> xr.Dataset:
     """`contact_counts` of every run, kept in a file until the runs or the measures change.
 
     Raises
@@ -104,19 +92,19 @@ def counted(ds: xr.Dataset, swept: Swept, jobs: int, path: Path) -> xr.Dataset:
     """
     missing = int(measures.outcome_is(ds, "missing").sum())
     if missing:
-        raise SweepStopped(f"{missing} runs of {swept.folder} are missing: see {swept.folder}/failed, then run again")
+        raise SweepStopped(f"{missing} runs of {runs.folder} are missing: see {runs.folder}/failed, then run again")
     made_of = f"{ds.attrs['content']} {cache.fingerprint(Path(measures.__file__).parent)}"
     if path.is_file():
         with xr.open_dataset(path) as kept:
             if kept.attrs.get("content") == made_of:
                 return kept.load()
-    counts = _all(swept, jobs).assign_attrs(content=made_of)
+    counts = _all(runs, jobs).assign_attrs(content=made_of)
     replace_durably(path, counts.to_netcdf)
     return counts
 
 
-def _all(swept: Swept, jobs: int) -> xr.Dataset:
-    grid, folder = swept
+def _all(runs: Swept, jobs: int) -> xr.Dataset:
+    grid, folder = runs
     files = [Store(folder).file(run_key(grid.scenario(point))) for point in grid.points()]
     with parallel_config("loky", inner_max_num_threads=1):
         rows = Parallel(n_jobs=jobs)(delayed(counts_of)(file) for file in files)

@@ -96,26 +96,16 @@ def _clearance(group: str, figure: str, published: float, *cells: Cell) -> Targe
     )
 
 
-def _free(figure: str, cell: Cell) -> Target:
+def _all_alike(figure: str, cell: Cell, hit: str) -> Target:
+    """Every run of a cell is blocked, or, with `hit`="free", none."""
+    words, share_blocked = ("every run blocked", 1) if hit == "blocked" else ("no run blocked", 0)
     return Target(
         FITTED,
         figure,
-        f"no run blocked, {cell}: 0",
+        f"{words}, {cell}: {share_blocked}",
         f"{SHOWN} runs",
         lambda s: share(*counts(s, cell)),
-        lambda s: predictive(*counts(s, cell, hit="free")),
-        2,
-    )
-
-
-def _blocked(figure: str, cell: Cell) -> Target:
-    return Target(
-        FITTED,
-        figure,
-        f"every run blocked, {cell}: 1",
-        f"{SHOWN} runs",
-        lambda s: share(*counts(s, cell)),
-        lambda s: predictive(*counts(s, cell)),
+        lambda s: predictive(*counts(s, cell, hit=hit)),
         2,
     )
 
@@ -204,8 +194,8 @@ TARGETS: tuple[Target, ...] = (
         _clearance(FITTED, "4", time, Cell(paper.FIG4_N, paper.FIG4_V_D, A))
         for A, time in paper.FIG4_CLEARANCE_TIME.items()
     ),
-    *(_free("7", cell) for cell in _many(200, 0.6, 1.0, 1.2, 1.4)),
-    _blocked("7", Cell(200, paper.FIG7_BLOCKED_FROM)),
+    *(_all_alike("7", cell, "free") for cell in _many(200, 0.6, 1.0, 1.2, 1.4)),
+    _all_alike("7", Cell(200, paper.FIG7_BLOCKED_FROM), "blocked"),
     _rotation_same(STILL_1, Cell(100, 1.0)),
     _rotation_clogs(STILL_2, Cell(100, 2.0)),
     *_fig9(),

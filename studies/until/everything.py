@@ -10,7 +10,7 @@ from studies import measures
 from studies.presentation.verdicts import MARKS, columns, interval
 from studies.until.planted import Covered, cells, coverage, settled
 from studies.until.rules import Boundaries, HalfWidths
-from sweep import Grid, Until, sweep_until
+from sweep import Grid, Until, sweep
 from sweep.until import account
 
 FOLDER = Path("results/until")
@@ -110,11 +110,11 @@ def main(quick: bool = False, jobs: int = 2) -> None:
     parts = [coverage_table(coverage(RULE, QUICK_COPIES if quick else COPIES)), planted_share(100)]
     print(*parts, sep="\n\n", flush=True)
     if not quick:
-        ds = sweep_until(GRID, FOLDER, RULE, jobs)
+        ds = sweep(GRID, FOLDER, jobs, until=RULE)
         saved = ds.attrs["runs_given"] / ds.attrs["runs_uniform"] <= LARGEST_SHARE and not ds.attrs["cells_open"]
         parts += [cell_table(ds), f"{account(ds)}; at most {LARGEST_SHARE:.0%}: {MARKS[saved]}", boundary_table(ds)]
         print(*parts[2:], sep="\n\n", flush=True)
-        finer = sweep_until(GRID, FOLDER, REFINED, jobs)
+        finer = sweep(GRID, FOLDER, jobs, until=REFINED)
         parts += [f"with v_d refined: {account(finer)}", boundary_table(finer)]
         print(*parts[5:], sep="\n\n")
     FOLDER.mkdir(parents=True, exist_ok=True)

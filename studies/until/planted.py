@@ -12,7 +12,8 @@ from scipy import stats
 from engine import OUTCOMES
 from studies import measures
 from studies.until.rules import HalfWidths
-from sweep.until import Until, only
+from sweep.schema import GATHERED
+from sweep.until import Until
 
 MEAN = 220.0  # s, of a planted clearance time
 SHARES = (0.0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.7, 0.9)  # planted blocked shares
@@ -52,8 +53,14 @@ def cells(rng: np.random.Generator, copies: int, supply: int, blocked: float, sc
     )
 
 
+def only(ds: xr.Dataset, given: xr.DataArray) -> xr.Dataset:
+    """The dataset as if the store held only the runs that are `given` (axes...) bool."""
+    pads = {v.name: np.dtype(v.dtype).type(v.pad) for v in GATHERED if v.name in ds}
+    return ds.assign({name: ds[name].where(given, pad).transpose(*ds[name].dims) for name, pad in pads.items()})
+
+
 def settled(ds: xr.Dataset, until: Until) -> NDArray[np.int64]:
-    """Seeds (copies,) that `sweep_until` gives each cell of planted data, with no budget."""
+    """Seeds (copies,) that `a sweep` gives each cell of planted data, with no budget."""
     place, supply = xr.DataArray(np.arange(ds.sizes["seed"]), dims="seed"), ds.sizes["seed"]
     given = xr.zeros_like(ds.outcome.isel(seed=0, drop=True), dtype=np.int64) + until.least
     while True:

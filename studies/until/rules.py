@@ -1,4 +1,4 @@
-"""Rules for `sweep.sweep_until`: half-widths of intervals over wanted ones, and cells beside undecided boundaries."""
+"""Rules for `until` of a sweep: half-widths of intervals over wanted ones, and cells beside undecided boundaries."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields

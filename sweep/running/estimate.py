@@ -5,10 +5,7 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from sweep.grid import Grid, Point, Scalar
-
-REPLICATE = "seed"  # what runs of one cell differ in
-Cell = tuple[Scalar, ...]
+from sweep.grid import SEED, Cell, Grid, Point, Scalar
 
 
 class Durations:
@@ -20,7 +17,7 @@ class Durations:
     """
 
     def __init__(self, grid: Grid) -> None:
-        self._axes = [name for name in grid.axes if name != REPLICATE]
+        self._axes = [name for name in grid.axes if name != SEED]
         self._rank = {name: _ranks(grid.axes[name]) for name in self._axes}
         self._sums: dict[Cell, tuple[float, int]] = {}
         self._nearest: dict[Cell, Cell] = {}

@@ -10,6 +10,7 @@ import xarray as xr
 from engine import BadInput, Scenario, models, rooms
 from studies import faster_to_frozen
 from studies.lin import everything, fig4, fig5, fig6, fig7, fig8, fig9, hazard, sweeps
+from studies.parisi import sweeps as parisi_sweeps
 from studies.presentation.artefact import make
 from studies.presentation.verdicts import Verdict
 from studies.published import lin2016 as paper
@@ -234,12 +235,15 @@ def test_the_command_finds_lins_figures_by_their_plain_names():
     assert "lin-fig4" not in names
 
 
-def test_the_quick_sweeps_are_part_of_the_full_ones(tmp_path):
-    for name, (quick, folder) in sweeps.grids(True, tmp_path).items():
-        full, same = sweeps.grids(False, tmp_path)[name]
-        assert folder == same
-        assert all(set(values) <= set(full.axes[axis]) for axis, values in quick.axes.items())
-        assert quick.constants == full.constants
+@pytest.mark.parametrize("of", [sweeps, parisi_sweeps])
+def test_the_quick_sweeps_are_part_of_the_full_ones(of):
+    whole = of.grids(quick=False)
+    for name, quick in of.grids(quick=True).items():
+        assert all(set(values) <= set(whole[name].axes[axis]) for axis, values in quick.axes.items())
+        assert quick.constants == whole[name].constants
+
+
+def test_the_quick_grid_of_both_models_is_part_of_the_full_one():
     for axis, values in faster_to_frozen.QUICK.axes.items():
         assert set(values) <= set(faster_to_frozen.GRID.axes[axis])
 
@@ -289,16 +293,15 @@ def test_a_crowd_that_blocks_is_never_the_soonest_out():
 def tiny(monkeypatch):
     """The sweeps with a few persons in a small room."""
 
-    def grids(quick, folder):
+    def grids(quick):
         small = {"N": 30, "size": 6.0}
         recorded = {"every": 30.0, "contacts": True}
-        found = {
+        return {
             "speeds": Grid(rooms.lin_room, v_d=[0.6, 1.0, 1.4, 2.0], N=[100, 200, 300], seed=[0], time_limit=2.0),
             "strengths": Grid(sweeps.strength_room, A=list(paper.FIG4_A), walls=sweeps.WALLS, seed=[0]),
             "rotation": Grid(rooms.lin_room, v_d=[1.0, 2.0], inertia=sweeps.TURNING, seed=range(2), **small),
             "snapshots": Grid(rooms.lin_room, seed=[0], v_d=1.0, **small, **recorded),
         }
-        return {name: sweeps.Swept(grid, folder / name) for name, grid in found.items()}
 
     monkeypatch.setattr(sweeps, "grids", grids)
 

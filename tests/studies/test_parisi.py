@@ -12,8 +12,9 @@ from engine import BadInput, rooms
 from studies.parisi import artefact, everything, fig1, fig4, fig5, fig6, fig8, fig9, fig10, sweeps, table1
 from studies.presentation.verdicts import Verdict
 from studies.published import parisi2005 as paper
-from sweep import Grid
+from sweep import Grid, Store
 from sweep.cli import _studies
+from sweep.schema import run_key
 from tests.measures.planted import flagged
 
 SEEDS = 6
@@ -130,13 +131,8 @@ def test_the_command_knows_every_figure_and_nothing_else_of_the_paper():
         assert callable(import_module(module).main)
 
 
-def test_the_quick_sweeps_are_part_of_the_full_ones(tmp_path):
-    for name, (quick, folder) in sweeps.grids(True, tmp_path).items():
-        full, same = sweeps.grids(False, tmp_path)[name]
-        assert folder == same
-        assert all(set(values) <= set(full.axes[axis]) for axis, values in quick.axes.items())
-        assert quick.constants == full.constants
-    assert [len(grid) for grid, _ in sweeps.grids(False, tmp_path).values()] == [182, 84, 112]
+def test_the_full_sweeps_have_the_runs_of_the_paper():
+    assert [len(grid) for grid in sweeps.grids(False).values()] == [182, 84, 112]
 
 
 def test_doors_that_the_paper_does_not_have_are_refused():
@@ -148,10 +144,9 @@ def test_doors_that_the_paper_does_not_have_are_refused():
 def tiny(monkeypatch):
     """The sweeps with a few persons in a small room."""
 
-    def grids(quick, folder):
+    def grids(quick):
         recorded = {"every": 0.02, "contacts": True, "state": "places", "N": 80, "size": 8.0}
-        speeds = Grid(rooms.parisi_room, v_d=[0.8, 1.5, 2.0, 3.0, 4.0, 6.0], seed=range(2), **recorded)
-        return {"speeds": sweeps.Swept(speeds, folder / "speeds")}
+        return {"speeds": Grid(rooms.parisi_room, v_d=[0.8, 1.5, 2.0, 3.0, 4.0, 6.0], seed=range(2), **recorded)}
 
     monkeypatch.setattr(sweeps, "grids", grids)
 
@@ -163,7 +158,7 @@ def test_a_tiny_sweep_goes_from_runs_to_pictures_and_is_counted_once(tiny, tmp_p
         assert all(isinstance(v, Verdict) for v in verdicts)
         assert (tmp_path / f"{name}.png").stat().st_size > 10_000
     assert dict(first.speed_counts.samples.sizes) == {"v_d": 6, "seed": 2}
-    row = sweeps.counts_of(sweeps.Store(tmp_path / "speeds").file(sweeps.run_key(run_of(first, 3.0, 1))))
+    row = sweeps.counts_of(Store(tmp_path / "speeds").file(run_key(run_of(first, 3.0, 1))))
     xr.testing.assert_equal(first.speed_counts.sel(v_d=3.0, seed=1, drop=True).transpose(*row.dims), row)
     monkeypatch.setattr(sweeps, "counts_of", None)
     again = sweeps.Sweeps(True, 1, tmp_path)

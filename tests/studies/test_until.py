@@ -7,8 +7,7 @@ import xarray as xr
 from studies import measures
 from studies.until import everything, planted
 from studies.until.rules import Boundaries, HalfWidths, may_be_smooth, until_of
-from sweep import Grid, Until, sweep, sweep_until
-from sweep.until import only
+from sweep import Grid, Until, sweep
 from tests.measures.planted import PAPER_BLOCKING, PAPER_V_D, column, rising_to, with_blocked
 from tests.sweep.tiny import TINY
 
@@ -21,7 +20,7 @@ def paper_like(seeds=20, **more) -> xr.Dataset:
 def given(ds: xr.Dataset, seeds: list[int]) -> xr.Dataset:
     """Only the first seeds of each v_d, as a sweep of unequal seeds leaves it."""
     number = xr.DataArray(seeds, {"v_d": ds.v_d}, ["v_d"])
-    return only(ds, xr.DataArray(np.arange(ds.sizes["seed"]), dims="seed") < number)
+    return planted.only(ds, xr.DataArray(np.arange(ds.sizes["seed"]), dims="seed") < number)
 
 
 UNEQUAL = [5, 8, 20, 12, 6, 20, 9, 7]
@@ -142,7 +141,7 @@ def test_more_uncertain_cells_get_more_seeds(covered):
 
 
 def test_planted_cells_are_settled_as_sweeps_of_runs_are(tmp_path):
-    """The simulation of coverage decides on planted cells what `sweep_until` decides on runs."""
+    """The simulation of coverage decides on planted cells what `sweep(..., until=...)` decides on runs."""
 
     def excess(ds: xr.Dataset) -> xr.DataArray:
         runs = (ds.outcome > 0).sum("seed")
@@ -150,7 +149,7 @@ def test_planted_cells_are_settled_as_sweeps_of_runs_are(tmp_path):
 
     until, grid = Until(excess, least=3, batch=3), Grid("lin_room", v_d=[0.8, 1.4], seed=range(15), **TINY)
     settled = planted.settled(sweep(grid, tmp_path / "all", jobs=1, progress=False), until)
-    ds = sweep_until(grid, tmp_path / "all", until, jobs=1, progress=False)
+    ds = sweep(grid, tmp_path / "all", 1, progress=False, until=until)
     assert settled.tolist() == ds.seeds_given.values.tolist()
     assert len(set(settled.tolist())) == 2
 

@@ -5,8 +5,9 @@ import pytest
 import xarray as xr
 
 from engine import BadInput
-from sweep import Grid, Until, gather, sweep, sweep_until
+from sweep import Grid, Until, gather, open_results, sweep
 from sweep.cli import main
+from sweep.status import status_of
 from sweep.storage.store import Store
 from sweep.until import account
 from tests.sweep.tiny import TINY, run_files
@@ -16,6 +17,10 @@ V_D = (0.8, 1.1, 1.4)
 
 def grid(seeds=12, v_d=V_D, **more) -> Grid:
     return Grid("lin_room", v_d=list(v_d), seed=range(seeds), **{**TINY, **more})
+
+
+def sweep_until(grid: Grid, store, until, jobs: int) -> xr.Dataset:
+    return sweep(grid, store, jobs, progress=False, until=until)
 
 
 def spread(wanted: float):
@@ -43,7 +48,7 @@ def seeds_run(ds: xr.Dataset) -> dict[float, list[int]]:
 
 
 def test_each_cell_gets_the_first_seeds_of_the_axis_until_its_rule_is_content(store):
-    ds = sweep_until(grid(), store, Until(fixed({0.8: 2, 1.1: 5, 1.4: 9}), least=2, batch=3), jobs=1, progress=False)
+    ds = sweep_until(grid(), store, Until(fixed({0.8: 2, 1.1: 5, 1.4: 9}), least=2, batch=3), 1)
     assert seeds_run(ds) == {0.8: [0, 1], 1.1: [0, 1, 2, 3, 4], 1.4: list(range(11))}
     assert ds.seeds_given.values.tolist() == [2, 5, 11]
     assert len(run_files(store)) == 18 == ds.attrs["runs_given"]
@@ -54,7 +59,7 @@ def test_each_cell_gets_the_first_seeds_of_the_axis_until_its_rule_is_content(st
 
 
 def test_runs_that_were_not_asked_for_are_missing_in_every_variable(store):
-    ds = sweep_until(grid(), store, Until(fixed({1.4: 6}), least=2, batch=4), jobs=1, progress=False)
+    ds = sweep_until(grid(), store, Until(fixed({1.4: 6}), least=2, batch=4), 1)
     not_run = ds.sel(v_d=0.8, seed=[2, 3, 4, 5])
     assert (not_run.outcome == 0).all()
     assert not_run.exit_time.isnull().all()
@@ -67,14 +72,14 @@ def test_runs_that_were_not_asked_for_are_missing_in_every_variable(store):
 
 def test_the_result_does_not_depend_on_what_the_store_held_nor_on_the_number_of_workers(store, tmp_path):
     until = Until(spread(0.01), least=3, batch=4)
-    once = sweep_until(grid(), store, until, jobs=1, progress=False)
+    once = sweep_until(grid(), store, until, 1)
     assert 3 < once.seeds_given.max() > once.seeds_given.min()
     full = tmp_path / "full"
     sweep(grid(), full, jobs=1, progress=False)
     again = {"resumed": (store, 1), "more held": (full, 1), "parallel": (tmp_path / "parallel", 2)}
     for name, (folder, jobs) in again.items():
         (
-            xr.testing.assert_identical(_plain(once), _plain(sweep_until(grid(), folder, until, jobs, progress=False))),
+            xr.testing.assert_identical(_plain(once), _plain(sweep_until(grid(), folder, until, jobs))),
             name,
         )
 
@@ -93,25 +98,25 @@ def test_an_interrupted_sweep_goes_on_to_the_same_result(store, tmp_path, monkey
         return spread(0.01)(ds)
 
     with pytest.raises(KeyboardInterrupt):
-        sweep_until(grid(), store, Until(interrupted, least=3, batch=4), jobs=1, progress=False)
+        sweep_until(grid(), store, Until(interrupted, least=3, batch=4), 1)
     kept = run_files(store)
     assert Grid.from_json(Store(store).grid.read_text()).axes["v_d"] == V_D  # status and gather still know it
-    ds = sweep_until(grid(), store, until, jobs=1, progress=False)
+    ds = sweep_until(grid(), store, until, 1)
     assert kept.items() <= run_files(store).items()
-    xr.testing.assert_identical(_plain(ds), _plain(sweep_until(grid(), tmp_path / "b", until, 1, progress=False)))
+    xr.testing.assert_identical(_plain(ds), _plain(sweep_until(grid(), tmp_path / "b", until, 1)))
 
 
 def test_a_higher_goal_adds_runs_and_leaves_all_files_as_they_were(store):
-    sweep_until(grid(), store, Until(fixed({1.4: 4}), least=2, batch=2), jobs=1, progress=False)
+    sweep_until(grid(), store, Until(fixed({1.4: 4}), least=2, batch=2), 1)
     before = run_files(store)
-    sweep_until(grid(), store, Until(fixed({1.4: 8}), least=2, batch=2), jobs=1, progress=False)
+    sweep_until(grid(), store, Until(fixed({1.4: 8}), least=2, batch=2), 1)
     assert before.items() < run_files(store).items()
     assert len(run_files(store)) - len(before) == 4
 
 
 def test_the_budget_goes_to_the_least_certain_cells_and_is_not_exceeded(store):
     until = Until(fixed({0.8: 8, 1.1: 12, 1.4: 10}), least=2, batch=2, budget=9)
-    ds = sweep_until(grid(), store, until, jobs=1, progress=False)
+    ds = sweep_until(grid(), store, until, 1)
     assert ds.seeds_given.values.tolist() == [2, 4, 3]
     assert ds.attrs["runs_given"] == 9 == len(run_files(store))
     assert ds.attrs["cells_open"] == 3
@@ -119,7 +124,7 @@ def test_the_budget_goes_to_the_least_certain_cells_and_is_not_exceeded(store):
 
 
 def test_the_supply_of_seeds_ends_a_cell_that_is_never_content(store):
-    ds = sweep_until(grid(5), store, Until(fixed({1.1: 99}), least=2, batch=2), jobs=1, progress=False)
+    ds = sweep_until(grid(5), store, Until(fixed({1.1: 99}), least=2, batch=2), 1)
     assert ds.seeds_given.values.tolist() == [2, 5, 2]
     assert ds.attrs["cells_open"] == 1
 
@@ -128,7 +133,7 @@ def test_a_cell_of_which_nothing_is_known_is_the_least_certain(store):
     def unknown(ds):
         return fixed({0.8: 4, 1.1: 4, 1.4: 4})(ds).where(ds.v_d != 1.4)
 
-    ds = sweep_until(grid(), store, Until(unknown, least=2, batch=2, budget=8), jobs=1, progress=False)
+    ds = sweep_until(grid(), store, Until(unknown, least=2, batch=2, budget=8), 1)
     assert ds.seeds_given.values.tolist() == [2, 2, 4]
 
 
@@ -139,13 +144,13 @@ def test_refinement_adds_cells_in_the_columns_that_ask_and_in_no_other(store):
     more = {**TINY, "N": [5, 6]}
     both = Grid("lin_room", v_d=list(V_D), seed=range(4), **more)
     until = Until(lambda ds: (ds.outcome > 0).sum("seed") * 0.0, least=2, refine=refine)
-    ds = sweep_until(both, store, until, jobs=1, progress=False)
+    ds = sweep_until(both, store, until, 1)
     assert ds.v_d.values.tolist() == [0.8, 1.1, 1.25, 1.4]
     assert ds.seeds_given.sel(v_d=1.25).values.tolist() == [0, 2]
     assert (ds.outcome.sel(v_d=1.25, N=5) == 0).all()
     assert ds.attrs["runs_given"] == 14 == len(run_files(store))
     assert ds.attrs["runs_uniform"] == 14  # a column that did not ask is not held against the uniform grid
-    xr.testing.assert_identical(_plain(ds), _plain(sweep_until(both, store, until, jobs=1, progress=False)))
+    xr.testing.assert_identical(_plain(ds), _plain(sweep_until(both, store, until, 1)))
 
 
 def test_refinement_stays_within_the_budget(store):
@@ -153,15 +158,32 @@ def test_refinement_stays_within_the_budget(store):
         return [{"v_d": round(v, 3)} for v in (0.9, 1.0, 1.2) if v not in ds.v_d.values]
 
     until = Until(fixed({}), least=2, budget=9, refine=refine)
-    ds = sweep_until(grid(), store, until, jobs=1, progress=False)
+    ds = sweep_until(grid(), store, until, 1)
     assert ds.attrs["runs_given"] == 8
     assert ds.v_d.values.tolist() == [0.8, 0.9, 1.1, 1.4]
 
 
 def test_the_gathered_dataset_of_the_store_holds_the_same_runs(store):
-    ds = sweep_until(grid(), store, Until(fixed({1.4: 6}), least=2, batch=4), jobs=1, progress=False)
+    ds = sweep_until(grid(), store, Until(fixed({1.4: 6}), least=2, batch=4), 1)
     kept = gather(Grid.from_json(Store(store).grid.read_text()), store)
     xr.testing.assert_identical(_plain(ds)[list(kept.data_vars)], _plain(kept))
+
+
+def test_status_counts_the_runs_that_were_asked_for_and_no_others(store):
+    ds = sweep_until(grid(), store, Until(fixed({0.8: 2, 1.1: 5, 1.4: 9}), least=2, batch=3), 1)
+    again = Grid.from_json(Store(store).grid.read_text())
+    found = status_of(again, Store(store))
+    assert (found.counts()["done"], len(found.runs)) == (18, 18)
+    assert seeds_run(ds) == seeds_run(open_results(store))
+
+
+def test_cells_with_random_numbers_of_their_own_keep_them(store):
+    own = Grid("lin_room", common_random_numbers=False, v_d=list(V_D), seed=range(8), **TINY)
+    ds = sweep_until(own, store, Until(fixed({1.4: 5}), least=2, batch=3), 1)
+    assert seeds_run(ds) == {0.8: [0, 1], 1.1: [0, 1], 1.4: [0, 1, 2, 3, 4]}
+    uniform = sweep(own, store, 1, progress=False)
+    xr.testing.assert_equal(ds.end_time.sel(v_d=1.4), uniform.end_time.sel(v_d=1.4, seed=ds.seed))
+    assert len(run_files(store)) == 24
 
 
 @pytest.mark.parametrize(
@@ -182,13 +204,13 @@ def test_the_gathered_dataset_of_the_store_holds_the_same_runs(store):
 )
 def test_a_rule_without_sense_is_refused_before_anything_runs(until, words, store):
     with pytest.raises(BadInput, match=words):
-        sweep_until(grid(), store, until, jobs=1, progress=False)
+        sweep_until(grid(), store, until, 1)
     assert not store.exists()
 
 
 def test_a_grid_without_seeds_is_refused(store):
     with pytest.raises(BadInput, match="no axis seed"):
-        sweep_until(Grid("lin_room", v_d=[1.0], **TINY), store, "blocked_share=0.1", jobs=1, progress=False)
+        sweep_until(Grid("lin_room", v_d=[1.0], **TINY), store, "blocked_share=0.1", 1)
 
 
 TOML = """room = "lin_room"
@@ -233,15 +255,17 @@ def test_a_grid_file_with_a_wrong_until_is_one_line(tmp_path, capsys):
 
 def test_words_and_table_say_the_same(tmp_path):
     words, table = "blocked_share=12%, least=5, batch=5", {"blocked_share": 0.12, "least": 5, "batch": 5}
-    a, b = (sweep_until(grid(15, V_D[:1]), tmp_path / k, u, 1, progress=False) for k, u in (("a", words), ("b", table)))
+    a, b = (sweep_until(grid(15, V_D[:1]), tmp_path / k, u, 1) for k, u in (("a", words), ("b", table)))
     xr.testing.assert_identical(_plain(a), _plain(b))
 
 
 def test_a_failing_run_is_named_by_its_parameters_and_the_rounds_go_on(store, capsys):
     crowded = Grid("lin_room", N=[5, 10], seed=range(4), size=2.2, time_limit=0.5)
     counted = Until(lambda ds: 4.0 / ds.seeds_given if "seeds_given" in ds else fixed_of_N(ds), least=2, batch=2)
-    ds = sweep_until(crowded, store, counted, jobs=1, progress=False)
-    assert "N = 10, seed = 3: BadInput" in capsys.readouterr().err
+    ds = sweep_until(crowded, store, counted, 1)
+    told = capsys.readouterr().err
+    assert "N = 10, seed = 3: BadInput" in told
+    assert "again: jamsweep run lin_room --size 2.2 --time-limit 0.5 --N 10 --seed 3" in told
     assert ds.seeds_given.values.tolist() == [4, 4]
     assert (ds.outcome.sel(N=10) == 0).all()
     assert (ds.outcome.sel(N=5) > 0).all()
