@@ -17,11 +17,14 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
+import psutil
+
 from engine import simulate
 from sweep import Grid, Store
 from sweep.running.execution import Execution, Manner
 from sweep.running.limits import Limits
 from sweep.running.plan import durations_of, plan_of
+from sweep.running.worker import Result
 from sweep.storage import durable
 
 FOLDER = Path("results/torture")  # on a disk: /tmp may be memory
@@ -37,8 +40,8 @@ class Measured(NamedTuple):
     planning: float  # s of processor time, until the first run could begin
     cost: float  # s of processor time a run besides its computation
     syncing: float  # s a run in fsync of this process, median
-    few: float  # MB the parent holds after the first 1000 runs
-    many: float  # MB after all
+    few: float  # MB the parent holds when 1000 runs of the sweep are over
+    many: float  # MB when all are
 
 
 def main(quick: bool) -> list[str]:
@@ -70,7 +73,7 @@ def _apart(backend: str, runs: int, few: int) -> Measured:
 
 
 def measured(folder: Path, backend: str, runs: int, few: int) -> Measured:
-    """Run one run, then a few, then the others."""
+    """Run one run, then all."""
     calls = _timed_fsync()
     store, grid = Store(folder), _grid(range(runs))
     store.make()
@@ -79,19 +82,30 @@ def measured(folder: Path, backend: str, runs: int, few: int) -> Measured:
     planning = _processor() - begin
     single = _took(_grid(range(runs, runs + 1)), store, backend)
     calls.clear()
-    took = _took(_grid(range(few)), store, backend) - single
-    resident = _resident()
-    if runs > few:
-        took += _took(grid, store, backend) - single
+    held: list[float] = []
+    took = _took(grid, store, backend, few, held) - single
     syncing = statistics.median(calls) * len(calls) / runs if calls else 0.0
-    return Measured(planning, (took / runs) - _bare(grid), syncing, resident, _resident())
+    return Measured(planning, (took / runs) - _bare(grid), syncing, held[0], _resident())
 
 
-def _took(grid: Grid, store: Store, backend: str) -> float:
-    """Processor time of running what is missing, s."""
+class Watched(Execution):
+    """An execution that notes what the parent holds after so many runs."""
+
+    few, held = 0, [0.0]
+
+    def _note(self, result: Result) -> None:
+        super()._note(result)
+        self.few -= 1
+        if self.few == 0:
+            self.held.append(_resident())
+
+
+def _took(grid: Grid, store: Store, backend: str, few: int = 1, held: list[float] | None = None) -> float:
+    """Processor time of running what is missing, s; `held` gets what the parent holds after `few` runs, MB."""
     plan = plan_of(grid, store)
     manner = Manner(backend, 1, None, Limits(), fail_fast=True, shown=False)
-    execution = Execution(plan.missing, durations_of(plan, grid, store), grid, store, manner)
+    execution = Watched(plan.missing, durations_of(plan, grid, store), grid, store, manner)
+    execution.few, execution.held = few, [] if held is None else held
     begin = _processor()
     execution.run()
     return _processor() - begin
@@ -131,7 +145,7 @@ def _grid(seeds: range) -> Grid:
 
 
 def _resident() -> float:
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
+    return psutil.Process().memory_info().rss / 1e6
 
 
 if __name__ == "__main__":
