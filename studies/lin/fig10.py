@@ -72,7 +72,7 @@ def _runs(axis: Axes, column: xr.Dataset) -> None:
         flows = got_out.isel(v_d=k).values
         spread = np.linspace(-0.035, 0.035, flows.size)
         axis.plot(v_d + spread, flows, ".", ms=3, color=figures.GREY, label="one run" if k == 0 else None)
-        _blocked(axis, v_d, int(column.blocked[k]), int(column.runs[k]), first=k == 0)
+        _blocked(axis, v_d, k, int(column.blocked[k]), int(column.runs[k]))
     mean = column.mean_flow
     told = column.out >= LEAST_RUNS  # an interval of fewer runs reaches below zero
     arms = np.abs([mean - column.mean_flow_low.where(told), column.mean_flow_high.where(told) - mean])
@@ -89,12 +89,13 @@ def _runs(axis: Axes, column: xr.Dataset) -> None:
     )
 
 
-def _blocked(axis: Axes, v_d: float, blocked: int, runs: int, first: bool) -> None:
-    """Blocked runs have no flow: crosses at zero, with how many of how many."""
+def _blocked(axis: Axes, v_d: float, k: int, blocked: int, runs: int) -> None:
+    """Blocked runs have no flow: crosses at zero, with how many of how many, at two heights lest neighbours touch."""
     if blocked:
         axis.plot([v_d], [0.0], "x", ms=5, color=figures.ORANGE)
-        axis.annotate(f"{blocked}/{runs}", (v_d, 0.05), ha="center", fontsize=6, color=figures.ORANGE)
-    if first:
+        height = 0.05 + 0.07 * (k % 2)
+        axis.annotate(f"{blocked}/{runs}", (v_d, height), ha="center", fontsize=6, color=figures.ORANGE)
+    if k == 0:
         axis.plot([], [], "x", ms=5, color=figures.ORANGE, label="blocked / runs")
 
 

@@ -73,7 +73,7 @@ def _panel(axis: Axes, found: Found, tolerances: list[float]) -> None:
     for name, setting in chosen(found.case.room).items():
         p = found.at(setting)
         axis.plot(p.cost, p.error, "o", ms=9, mfc="none", mec="black", mew=0.9)
-        shift, side = ((8, 5), "left") if name != PAPER else ((-7, -11), "right")
+        shift, side = ((8, 5), "left") if name != PAPER else ((0, 8), "center")
         text = name.replace("%", " %").replace("mm", " mm")
         axis.annotate(text, (p.cost, p.error), shift, textcoords="offset points", ha=side, fontsize=7, zorder=5)
     if found.floor > 0.0:
