@@ -19,6 +19,7 @@ from typing import Any, Self
 from engine import BadInput
 from engine.errors import require
 from sweep.errors import SweepStopped
+from sweep.extras import load
 from sweep.report import late_word
 from sweep.running.attached import PINNED, ctrl_c_left_alone
 from sweep.running.slot import ASIDE, LIVES, Job, run_in_own_slot
@@ -47,7 +48,7 @@ class Dask:
 
     def __init__(self, scheduler: str | None, jobs: int, store: Store) -> None:
         self._scheduler, self._jobs, self._store = scheduler, jobs, store
-        self._distributed = _distributed()
+        self._distributed = load("distributed", "dask", "backend 'dask'")
         self._open = ExitStack()
         self._token = ""
         self._places, self._looked = 0, 0.0
@@ -143,13 +144,6 @@ def _sees(store: str, token: str) -> tuple[str, bool]:
     return socket.gethostname(), (Path(store) / token).exists()
 
 
-def _distributed() -> Any:
-    try:
-        return importlib.import_module("distributed")
-    except ImportError:
-        raise BadInput("backend 'dask' is not installed: pip install 'jamsweep[dask]'") from None
-
-
 def own_cluster(jobs: int) -> Any:
     """A dask cluster of worker processes of this machine, for a with statement.
 
@@ -158,7 +152,7 @@ def own_cluster(jobs: int) -> Any:
     BadInput
         If dask is not installed, or the workers cannot be started.
     """
-    distributed = _distributed()
+    distributed = load("distributed", "dask", "backend 'dask'")
     settings = {"distributed.scheduler.allowed-failures": LIVES - 1}
     with ctrl_c_left_alone(), importlib.import_module("dask").config.set(settings):
         try:

@@ -99,7 +99,9 @@ def test_a_scheduler_that_does_not_answer_is_one_line(store: Path, monkeypatch: 
 
 def test_dask_that_is_not_installed_is_one_line(store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(__import__("sys").modules, "distributed", None)
-    with pytest.raises(BadInput, match=r"backend 'dask' is not installed: pip install 'jamsweep\[dask\]'"):
+    with pytest.raises(
+        BadInput, match=r"backend 'dask' needs distributed, which is not installed: pip install 'jamsweep\[dask\]'"
+    ):
         sweep(Grid("lin_room", **TINY), store, backend="dask")
 
 
