@@ -2,7 +2,7 @@
 
 The cost of a run is processor time, of the parent and its one worker, beyond that of a sweep of one run and beyond that
 of the bare simulations; other programs on the machine do not add to it. What the disk takes to hold the files for good
-comes on top: the time that calls of fsync take, measured in a serial sweep.
+comes on top: the time that calls of fsync take, measured in a serial sweep. Gathering and status are processor time too.
 """
 
 import itertools
@@ -14,23 +14,27 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
 import psutil
 
 from engine import simulate
-from sweep import Grid, Store
+from sweep import Grid, Store, gather
 from sweep.running.execution import Execution, Manner
 from sweep.running.limits import Limits
 from sweep.running.plan import durations_of, plan_of
 from sweep.running.worker import Result
+from sweep.status import status_of
 from sweep.storage import durable
 
 FOLDER = Path("results/torture")  # on a disk: /tmp may be memory
 LONGEST = 0.020  # s, the cost of a run with durable write
 GROWTH = 5.0  # MB of the parent between its 1000th and its last run
 FEW = 1000
+COLD, WARM = 3.0, 0.1  # s, to gather 1000 run files, and to open what was gathered
+STATUS = 1.0  # s, to say how far 10,000 runs are, once the program has started
 TINY = {"N": 2, "size": 4.0, "time_limit": 0.1}
 
 
@@ -42,6 +46,9 @@ class Measured(NamedTuple):
     syncing: float  # s a run in fsync of this process, median
     few: float  # MB the parent holds when 1000 runs of the sweep are over
     many: float  # MB when all are
+    cold: float  # s of processor time to gather as many runs as `few` from their files
+    warm: float  # s to do so again
+    status: float  # s to say the state of all runs
 
 
 def main(quick: bool) -> list[str]:
@@ -52,6 +59,13 @@ def main(quick: bool) -> list[str]:
     problems = []
     if total > LONGEST and not quick:  # CI's machines are shared
         problems.append(f"a run costs {total * 1e3:.1f} ms besides its computation, above {LONGEST * 1e3:g} ms")
+    for what, took, longest in (
+        (f"gathering {few} files", loky.cold, COLD),
+        (f"gathering {few} files again", loky.warm, WARM),
+        (f"the status of {runs} runs", loky.status, STATUS),
+    ):
+        if took > longest and not quick:
+            problems.append(f"{what} takes {took:.2f} s, above {longest:g} s")
     if loky.many - loky.few > GROWTH:
         problems.append(f"the parent grew from {loky.few:.0f} to {loky.many:.0f} MB while it ran")
     costs = (
@@ -59,7 +73,8 @@ def main(quick: bool) -> list[str]:
     )
     memory = f"parent {loky.few:.0f} MB after {few}, {loky.many:.0f} MB after {runs} runs"
     planning = f"planning {loky.planning * 1e3 / runs:.2f} ms a run"
-    print(f"scale: ms a run besides computation: {costs}; {planning}; {memory}; {len(problems)} problems", flush=True)
+    reading = f"gathering {few} runs {loky.cold:.2f} s, again {loky.warm:.3f} s; status of {runs} {loky.status:.2f} s"
+    print(f"scale: ms a run besides computation: {costs}; {planning}; {memory}; {reading}; {len(problems)} problems")
     return problems
 
 
@@ -85,7 +100,16 @@ def measured(folder: Path, backend: str, runs: int, few: int) -> Measured:
     held: list[float] = []
     took = _took(grid, store, backend, few, held) - single
     syncing = statistics.median(calls) * len(calls) / runs if calls else 0.0
-    return Measured(planning, (took / runs) - _bare(grid), syncing, held[0], _resident())
+    resident, cost = _resident(), (took / runs) - _bare(grid)
+    read = [_spent(gather, _grid(range(few)), store), _spent(gather, _grid(range(few)), store)]
+    return Measured(planning, cost, syncing, held[0], resident, *read, _spent(status_of, grid, store))
+
+
+def _spent(call: Callable[..., object], *arguments: object) -> float:
+    """Processor time of a call, s."""
+    begin = _processor()
+    call(*arguments)
+    return _processor() - begin
 
 
 class Watched(Execution):
