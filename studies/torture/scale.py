@@ -2,7 +2,8 @@
 
 The cost of a run is processor time, of the parent and its one worker, beyond that of a sweep of one run and beyond that
 of the bare simulations; other programs on the machine do not add to it. What the disk takes to hold the files for good
-comes on top: the time that calls of fsync take, measured in a serial sweep. Gathering and status are processor time too.
+comes on top: the time that calls of fsync take, measured in a serial sweep. Gathering and status take processor
+time too.
 """
 
 import itertools
@@ -101,8 +102,9 @@ def measured(folder: Path, backend: str, runs: int, few: int) -> Measured:
     took = _took(grid, store, backend, few, held) - single
     syncing = statistics.median(calls) * len(calls) / runs if calls else 0.0
     resident, cost = _resident(), (took / runs) - _bare(grid)
-    read = [_spent(gather, _grid(range(few)), store), _spent(gather, _grid(range(few)), store)]
-    return Measured(planning, cost, syncing, held[0], resident, *read, _spent(status_of, grid, store))
+    gather(_grid(range(1)), store)  # what the first call alone costs
+    cold, warm = (_spent(gather, _grid(range(few)), store) for _ in range(2))
+    return Measured(planning, cost, syncing, held[0], resident, cold, warm, _spent(status_of, grid, store))
 
 
 def _spent(call: Callable[..., object], *arguments: object) -> float:
