@@ -5,7 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
 
-.PHONY: help setup bench stress torture study-accuracy study-readings study-real-crowds test lint constraints clean
+.PHONY: help setup bench stress torture study-accuracy study-readings study-real-crowds test lint docs constraints clean
 .DEFAULT_GOAL := help
 
 help:  ## this list
@@ -58,6 +58,12 @@ lint: $(READY)  ## style, layers, types
 	@$(BIN)/ruff format --check .
 	@$(BIN)/lint-imports --no-cache
 	@$(BIN)/mypy
+
+docs: $(READY)  ## the documentation in docs/_build/html/index.html
+	@$(BIN)/python -c 'import furo, myst_parser' 2>/dev/null || \
+	  $(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[docs]'
+	@$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going docs docs/_build/html
+	@echo docs/_build/html/index.html
 
 constraints: $(READY)  ## pin what is installed now
 	@$(BIN)/pip freeze --exclude-editable > constraints.txt
