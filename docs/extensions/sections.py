@@ -7,6 +7,7 @@ prose. Both become lists and text of their own. Fields of a NamedTuple take thei
 import inspect
 import re
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Any
 
 from sphinx.application import Sphinx
@@ -14,7 +15,7 @@ from sphinx.application import Sphinx
 from engine.dispatch import Generic
 
 ENTRY = re.compile(r"(?P<names>\w+(?:, \w+)*)(?: : (?P<words>.*))?$")
-FIELD = re.compile(r"^    (?P<name>\w+): [\w.]+.*?#\s*(?P<words>.+)$", re.MULTILINE)
+FIELD = re.compile(r"^    (?P<name>\w+): (?P<type>\w+)[^#\n]*(?:#\s*(?P<words>.+))?$", re.MULTILINE)
 TITLES = ("Parameters", "Attributes", "Returns", "Yields", "Raises")
 
 
@@ -32,7 +33,7 @@ def skipped(app: Sphinx, what: str, name: str, thing: Any, skip: bool, options: 
 def _translated(lines: list[str]) -> Iterator[str]:
     heads = [k for k, line in enumerate(lines[:-1]) if line in TITLES and set(lines[k + 1]) == {"-"}]
     yield from lines[: heads[0]] if heads else lines
-    for head, following in zip(heads, [*heads[1:], len(lines)], strict=True):
+    for head, following in pairwise([*heads, len(lines)]):
         title, body = lines[head], lines[head + 2 : following]
         yield from ("", f".. rubric:: {title}", "")
         yield from body if title in ("Returns", "Yields") else _entries(body, title == "Raises")
@@ -62,7 +63,8 @@ def _fields(thing: Any) -> Iterator[str]:
     if not (inspect.isclass(thing) and hasattr(thing, "_fields")):
         return
     for field in FIELD.finditer(inspect.getsource(thing)):
-        yield from ("", f"``{field['name']}``", f"    {field['words']}")
+        words = field["words"] or ("a pure number" if field["type"] == "float" else "")
+        yield from ("", f"``{field['name']}``", f"    {words}") if words else ()
 
 
 def setup(app: Sphinx) -> dict[str, bool]:

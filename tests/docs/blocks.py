@@ -13,6 +13,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import pytest
 from markdown_it import MarkdownIt
 
 from engine import laws
@@ -101,10 +102,9 @@ def _jamsweep(words: list[str]) -> None:
     if words[0] == "study":
         _study(words[1])
         return
-    try:
+    with pytest.raises(SystemExit) as end:
         cli.main(words)
-    except SystemExit as end:
-        assert not end.code, f"jamsweep {shlex.join(words)} ended with exit code {end.code}"
+    assert not end.value.code, f"`jamsweep {shlex.join(words)}` ended with exit code {end.value.code}"
 
 
 def _pip(words: list[str]) -> None:
