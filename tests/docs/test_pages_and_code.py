@@ -20,7 +20,7 @@ def rows(page: str, before: str) -> Iterator[list[str]]:
     """Cells of the first table after these words."""
     text = (DOCS / page).read_text("utf-8").partition(before)[2]
     lines = text[text.index("\n| ") :].strip().split("\n\n")[0].splitlines()
-    return ([cell.strip() for cell in line.strip("|").split(" | ")] for line in lines[2:])
+    return ([cell.strip() for cell in line[1:-1].split("|")] for line in lines[2:])
 
 
 def words(cell: str) -> list[str]:
