@@ -20,6 +20,7 @@ default_role = "code"  # of `single backticks` in docstrings
 
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3
+myst_update_mathjax = False  # formulas are MathML
 
 autodoc_default_options = {"members": True}
 autodoc_member_order = "bysource"
