@@ -11,6 +11,7 @@ from engine import laws
 from engine.accuracy import LEVELS
 from engine.dispatch import Generic
 from sweep import schema
+from sweep.cli import cli
 from sweep.schema import Variable
 
 FROM_CONTACTS, FROM_SAMPLES, WHOLE = "`contacts`", "`every` > 0", '`state="whole"`'
@@ -97,6 +98,12 @@ def accuracy_levels() -> str:
     return table(("accuracy", "integrator", "share of the longest stable step", "force tolerance"), rows)
 
 
+def commands() -> str:
+    """The commands of the shell."""
+    rows = ((f"`jamsweep {name}`", command.get_short_help_str(limit=200)) for name, command in cli.commands.items())
+    return table(("command", "what it does"), rows)
+
+
 def _flags() -> str:
     return ", ".join(f"{k} {word}" for k, word in enumerate(schema.OUTCOMES))
 
@@ -121,6 +128,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "law-kinds": law_kinds,
     "law-types": law_types,
     "accuracy-levels": accuracy_levels,
+    "commands": commands,
 }
 
 
