@@ -31,6 +31,10 @@ add_module_names = False
 toc_object_entries_show_parents = "hide"
 
 nitpicky = True
+nitpick_ignore = [  # types of an attribute of Store that is not for users
+    ("py:class", "sweep.storage.manifest.Manifest"),
+    ("py:class", "sweep.storage.manifest.Entry"),
+]
 nitpick_ignore_regex = [  # no inventory of another project is fetched: the build needs no network
     (r"py:.*", rf"~?({package})\..*")
     for package in ("numpy", "xarray", "pandas", "pathlib", "collections", "typing", "click")

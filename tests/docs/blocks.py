@@ -28,7 +28,18 @@ LAW = re.compile(r"^@(\w+)\.law\(", re.MULTILINE)
 SHELL = ("", "shell", "console", "bash", "sh")  # an indented block names no language
 EXTRAS = re.compile(r"(?:jamsweep|\.)\[([\w,-]+)\]")
 NOT_HERE = {"git": "needs a network", ".": "changes the shell that it is given to", "cd": "the same"}
-QUICK = {"NUMBA_NUM_THREADS": "1", "NUMBA_OPT": "1"}  # compiling takes longer than running
+LAW_TYPE = re.compile(r"^class (\w+)\(NamedTuple\)", re.MULTILINE)
+COMPILED = {"CONTRIBUTING.md"}  # pages whose laws are compiled into a whole kernel, which takes half a minute
+ALONE = """
+import inspect
+from numba import njit
+from engine import laws
+for generic in {generic for kind in laws.KINDS.values() for generic in kind}:
+    for law in [law for law in generic.laws if law.__name__ in NAMES]:
+        words = ", ".join(inspect.signature(inspect.unwrap(generic)).parameters)
+        arguments = law(*[0.5] * len(law._fields)), *[0.5] * words.count(",")
+        assert njit(eval(f"lambda {words}: generic({words})", {"generic": generic}))(*arguments) == generic(*arguments)
+"""
 
 
 class Block(NamedTuple):
@@ -68,7 +79,7 @@ def execute(page: Path, folder: Path) -> None:
         else:
             assert block.language in ("python", "text"), f"{page}: nothing is known about {block.language!r}"
     if adds_laws:
-        print(with_laws([block.code for block in found if block.language == "python"], folder))
+        print(with_laws(page, [block.code for block in found if block.language == "python"], folder))
 
 
 def _lines(code: str) -> Iterator[str]:
@@ -124,20 +135,30 @@ def grid_file(code: str, folder: Path) -> None:
     read_until(path)
 
 
-def with_laws(codes: list[str], folder: Path) -> str:
+def with_laws(page: Path, codes: list[str], folder: Path) -> str:
     """Run the blocks of a page that adds laws, and the tests in them, in a copy of the engine that has those laws.
 
-    A block that registers a law goes to the end of the file of its kind.
+    A block that registers a law goes to the end of the file of its kind. Where the kernel is not compiled, the laws
+    are: alone.
     """
     shutil.copytree(ROOT / "engine", folder / "engine", ignore=shutil.ignore_patterns("__pycache__"))
-    for code in (code for code in codes if LAW.search(code)):
+    added = [code for code in codes if LAW.search(code)]
+    for code in added:
         path = folder / f"{_module_of(code).replace('.', '/')}.py"
         path.write_text(f"{path.read_text('utf-8')}\n\n{code}", "utf-8")
-    script = "\n".join(code for code in codes if not LAW.search(code))
+    script = "\n".join(code for code in codes if code not in added)
     script += "\nfor name in [name for name in globals() if name.startswith('test_')]:\n    globals()[name]()\n"
-    environment = os.environ | QUICK | {"NUMBA_CACHE_DIR": str(folder / "cache"), "PYTHONPATH": str(folder)}
+    if page.name in COMPILED:
+        return _in_copy(script, folder, NUMBA_OPT="1")  # compiling takes longer than running
+    _in_copy(f"NAMES = {LAW_TYPE.findall(''.join(added))}{ALONE}", folder)
+    return _in_copy(script, folder, NUMBA_DISABLE_JIT="1")
+
+
+def _in_copy(script: str, folder: Path, **variables: str) -> str:
+    """What a script prints in a folder that has an engine of its own; a warning is an error."""
+    own = {"NUMBA_CACHE_DIR": str(folder / "cache"), "NUMBA_NUM_THREADS": "1", "PYTHONPATH": str(folder)}
     run = [sys.executable, "-W", "error", "-c", script]
-    done = subprocess.run(run, cwd=folder, env=environment, capture_output=True, text=True)
+    done = subprocess.run(run, cwd=folder, env=os.environ | own | variables, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
