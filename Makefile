@@ -62,7 +62,7 @@ lint: $(READY)  ## style, layers, types
 docs: $(READY)  ## the documentation in docs/_build/html/index.html
 	@$(BIN)/python -c 'import furo, myst_parser' 2>/dev/null || \
 	  $(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[docs]'
-	@$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going docs docs/_build/html
+	@$(BIN)/sphinx-build --quiet --fresh-env --fail-on-warning --keep-going docs docs/_build/html
 	@echo docs/_build/html/index.html
 
 constraints: $(READY)  ## pin what is installed now

@@ -42,21 +42,15 @@ def _translated(lines: list[str]) -> Iterator[str]:
 
 def _entries(body: list[str], errors: bool) -> Iterator[str]:
     """A definition list: names, and below them what is said of them."""
-    for line in body:
+    for line, following in pairwise([*body, ""]):
         entry = ENTRY.match(line)
         if entry:
             names = entry["names"].split(", ")
-            shown = (f":py:exc:`.{name}`" if errors else f"``{name}``" for name in names)
-            yield ", ".join(shown)
-            yield from (f"    {_sentence(entry['words'])}",) if entry["words"] else ()
+            yield ", ".join(f":py:exc:`.{name}`" if errors else f"``{name}``" for name in names)
+            starts = following.lstrip()[:1].isupper()  # a type such as "float" stands as a sentence before what follows
+            yield from (f"    {entry['words']}" + "." * starts,) if entry["words"] else ()
         else:
             yield line if not line or line.startswith(" ") else f"    {line}"
-
-
-def _sentence(words: str) -> str:
-    """A type such as "float" stands as a sentence before what follows."""
-    typed = re.fullmatch(r"(str|float|int|bool|Rules)( or sequence of \w+)?", words)
-    return f"{words}." if typed else words
 
 
 def _fields(thing: Any) -> Iterator[str]:

@@ -72,11 +72,14 @@ def outcomes() -> str:
 
 def law_kinds() -> str:
     """What a model's fields must have a law of, and the laws that there are."""
-    rows = []
+    fields: dict[tuple[Generic, ...], list[str]] = {}
     for kind, generics in laws.KINDS.items():
+        fields.setdefault(generics, []).append(f"`{kind}`")
+    rows = []
+    for generics, kinds in fields.items():
         for generic in generics:
             signature = f"`{generic.__name__}{inspect.signature(inspect.unwrap(generic))}`"
-            rows.append((f"`{kind}`" if generic is generics[0] else "", signature, _first_paragraph(generic)))
+            rows.append((", ".join(kinds) if generic is generics[0] else "", signature, _first_paragraph(generic)))
     return table(("field of a model", "function", "what"), rows)
 
 
@@ -113,7 +116,7 @@ def _dims(dims: Sequence[str]) -> str:
 
 
 def _unit(units: str) -> str:
-    return "" if units == "1" else units
+    return "" if units == "1" else f"`{units}`"
 
 
 def _first_paragraph(generic: Generic) -> str:
