@@ -1,10 +1,12 @@
 """Damage: truncated files and flipped bits; all must be found, none served."""
 
+import io
 import random
 import shutil
 import sys
 import tempfile
 from collections.abc import Callable
+from contextlib import redirect_stderr
 from pathlib import Path
 
 import xarray as xr
@@ -33,7 +35,8 @@ def main(quick: bool) -> list[str]:
                 compact(store)
             victim = _victim(store, kind)
             for spoil in (*[_truncated] * truncations, *[_flipped] * flips):
-                problems += _tried(store, victim, kind, spoil, whole)
+                with redirect_stderr(io.StringIO()):  # a thousand lines that say what was found
+                    problems += _tried(store, victim, kind, spoil, whole)
     tried = f"{truncations} truncations and {flips} flipped bits each of {', '.join(KINDS)}"
     print(f"damage: {tried}: {len(problems)} not found or served")
     return problems
