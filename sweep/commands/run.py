@@ -1,17 +1,18 @@
 """`jamsweep run`: each room a subcommand, each of its keywords an option."""
 
 import inspect
+import json
 import re
 from pathlib import Path
 from typing import Any, get_type_hints
 
 import click
 
-from engine import Scenario, simulate
+from engine import FINGERPRINT, Run, Scenario, simulate
 from engine.errors import require
 from engine.rooms import ROOMS
 from sweep.grid import Room, plain_kind
-from sweep.schema import PARAMETERS
+from sweep.schema import PARAMETERS, run_key
 from sweep.storage.durable import require_writable
 from sweep.storage.runfile import write_run
 
@@ -36,30 +37,46 @@ def run() -> None:
 
     \b
     jamsweep run lin_room --v-d 1.0 --N 200 --seed 1 -o run.nc
+    jamsweep run parisi_room --v-d 4 --every 0.1 --contacts -o run.nc
+    jamsweep run lin_room --v-d 1.6 --json
+
+    Each room has options of its own: jamsweep run lin_room --help.
     """  # noqa: D301  click reads \b as a character
 
 
 def _room_command(name: str, room: Room) -> click.Command:
-    def once(output: Path | None, **parameters: Any) -> None:
-        _run_once(room(**parameters), output)
+    def once(output: Path | None, as_json: bool, **parameters: Any) -> None:
+        _run_once(room(**parameters), output, as_json)
 
     target = click.Path(dir_okay=False, path_type=Path)
     out = click.Option(["-o", "--output"], type=target, help="netCDF file to write the run to.")
+    plain = click.Option(["--json", "as_json"], is_flag=True, help="Say how the run ended as JSON on stdout.")
     summary, example = first_line(room), f"\b\njamsweep run {name} --seed 1 -o run.nc"
-    options, words = [*options_of(room), out], f"{summary}\n\n{example}"
+    options, words = [*options_of(room), out, plain], f"{summary}\n\n{example}"
     return click.Command(name, params=options, callback=once, help=words, short_help=summary)
 
 
-def _run_once(scenario: Scenario, output: Path | None) -> None:
+def _run_once(scenario: Scenario, output: Path | None, as_json: bool) -> None:
     if output is not None:
         named = output.name != "" and output.name.isprintable()
         require(named, "output", repr(str(output)), "is not the name of a file", "name the netCDF file to write")
         require_writable(output.absolute().parent, "output folder")
     result = simulate(scenario)
-    click.echo(str(result))
     if output:
         write_run(result, output)
+    if as_json:
+        click.echo(json.dumps(_plain(result) | {"file": str(output) if output else None}))
+        return
+    click.echo(str(result))
+    if output:
         click.echo(str(output))
+
+
+def _plain(result: Run) -> dict[str, Any]:
+    """What a program wants to know of a run; times in s."""
+    ended = {"outcome": result.outcome, "end_time": float(result.end_time), "words": str(result)}
+    persons = {"persons": int(result.N), "out": int(result.N_out), "exit_time": result.exit_time.tolist()}
+    return ended | persons | {"run_key": run_key(result.scenario), "engine": FINGERPRINT}
 
 
 def options_of(room: Room) -> list[click.Parameter]:

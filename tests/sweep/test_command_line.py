@@ -1,15 +1,19 @@
 """The command jamsweep: what it prints, and how it refuses."""
 
+import json
+import os
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
+import click
 import pytest
 
 from engine import rooms, simulate
 from engine.rooms import ROOMS
 from sweep import open_results, read_run
-from sweep.cli import main
+from sweep.cli import cli, main
 from sweep.commands.run import parameter_words
 from tests.sweep.tiny import TINY
 
@@ -61,6 +65,94 @@ def test_sweep_status_and_gather_follow_a_grid_file(tmp_path: Path, capsys: pyte
     assert jamsweep("gather", store, "-o", tmp_path / "out.nc") == 0
     assert (tmp_path / "out.nc").exists()
     assert (open_results(store).outcome > 0).all()
+
+
+def test_run_and_sweep_speak_json(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    path = tmp_path / "run.nc"
+    assert jamsweep("run", "lin_room", "--v-d", "1.4", "--seed", "2", *SMALL, "-o", path, "--json") == 0
+    said = json.loads(capsys.readouterr().out)
+    run = simulate(rooms.lin_room(v_d=1.4, seed=2, **TINY))
+    assert (said["outcome"], said["exit_time"], said["file"]) == (run.outcome, run.exit_time.tolist(), str(path))
+    assert said["run_key"] == read_run(path).attrs["run_key"]
+    grid = grid_file(tmp_path)
+    assert jamsweep("sweep", grid, "--dry-run", "--json") == 0
+    assert json.loads(capsys.readouterr().out)["states"]["missing"] == 6
+    assert jamsweep("sweep", grid, "--jobs", 1, "--json") == 0
+    told = json.loads(capsys.readouterr().out)
+    assert (told["runs"], sum(told["outcomes"].values()), told["outcomes"]["missing"]) == (6, 6, 0)
+    assert told["dataset"] == str(tmp_path / "results" / "dataset.nc")
+    assert told["failure_notes"] == []
+
+
+def test_a_failed_sweep_names_its_notes_in_json(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    path = grid_file(tmp_path, "[axes]\nN = [3, 10]\n[constants]\nsize = 2.2\ntime_limit = 0.5\n")
+    assert jamsweep("sweep", path, "--jobs", 1, "--json") == 1
+    told = json.loads(capsys.readouterr().out)
+    assert told["outcomes"]["missing"] == 1
+    assert "do not fit" in Path(told["failure_notes"][0]).read_text()
+
+
+def every_command(group: click.Group, *names: str) -> Iterator[tuple[str, ...]]:
+    for name in group.list_commands(click.Context(group)):
+        command = group.get_command(click.Context(group), name)
+        yield (*names, name)
+        if isinstance(command, click.Group):
+            yield from every_command(command, *names, name)
+
+
+def test_every_command_has_help_with_an_example(capsys: pytest.CaptureFixture) -> None:
+    commands = list(every_command(cli))
+    assert {("run", "lin_room"), ("sweep",), ("init",), ("completion",)} <= set(commands)
+    for names in commands:
+        assert jamsweep(*names, "--help") == 0
+        said = capsys.readouterr().out
+        examples = [line.strip() for line in said.splitlines()[1:] if f"jamsweep {' '.join(names)} " in line]
+        assert examples, names
+        assert max(map(len, said.splitlines())) <= 120
+
+
+def test_the_help_says_what_exit_codes_mean(capsys: pytest.CaptureFixture) -> None:
+    assert jamsweep("--help") == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "Exit codes: 0 all done, 1 a run failed or a file is damaged, 2 bad input, 130 interrupted" in said
+
+
+def completed(*words: str) -> set[str]:
+    """What a shell is offered for the last word."""
+    asked = {"_JAMSWEEP_COMPLETE": "bash_complete", "COMP_WORDS": " ".join(words), "COMP_CWORD": str(len(words) - 1)}
+    command = [sys.executable, "-c", "from sweep.cli import main; main()"]
+    root = Path(rooms.__file__).parents[1]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=root, env=os.environ | asked, check=True)
+    return {line.partition(",")[2] for line in done.stdout.splitlines()}
+
+
+def test_a_shell_completes_commands_rooms_options_and_studies(capsys: pytest.CaptureFixture) -> None:
+    for shell in ("bash", "zsh", "fish"):
+        assert jamsweep("completion", shell) == 0
+        said = capsys.readouterr().out
+        assert f"_JAMSWEEP_COMPLETE={shell}_complete" in said
+    assert completed("jamsweep", "st") == {"status", "study"}
+    assert completed("jamsweep", "run", "") == set(ROOMS)
+    assert "--v-d" in completed("jamsweep", "run", "lin_room", "--v")
+    assert {"fig10", "fig4"} <= completed("jamsweep", "study", "fi")
+
+
+def test_a_reader_that_goes_away_is_no_error_to_complain_of(tmp_path: Path) -> None:
+    root = Path(rooms.__file__).parents[1]
+    code = f"{sys.executable} -m sweep.cli --help | true; exit ${{PIPESTATUS[0]}}"
+    done = subprocess.run(["bash", "-c", code], capture_output=True, text=True, cwd=root)
+    assert done.returncode in (0, 141)  # 0: the pipe took it all before the reader went
+    assert not done.stderr
+
+
+def test_off_a_terminal_progress_is_lines_without_control_characters(tmp_path: Path) -> None:
+    root = Path(rooms.__file__).parents[1]
+    command = [sys.executable, "-m", "sweep.cli", "sweep", str(grid_file(tmp_path)), "--jobs", "1"]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=root, env=os.environ | {"TERM": "xterm"})
+    assert done.returncode == 0
+    assert "6 of 6 runs over" in done.stderr
+    assert "\x1b" not in done.stdout + done.stderr
+    assert "\r" not in done.stdout + done.stderr
 
 
 def test_a_failed_run_gives_exit_code_1(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
