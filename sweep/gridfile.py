@@ -139,9 +139,10 @@ def _grid(file: TomlFile, axes: Mapping[str, Any], constants: Mapping[str, Any])
     room = file.entries["room"]
     with file.blamed("room"):
         require(room in ROOMS, "room", repr(room), "is not known", f"choose one of {', '.join(ROOMS)}")
-    choice = {CHOICE: file.entries[CHOICE]} if CHOICE in file.entries else {}
-    given = {("axes", n): v for n, v in axes.items()} | {("constants", n): v for n, v in constants.items()}
-    given |= {(CHOICE,): v for v in choice.values()}
+    given: dict[Key, Any] = {("axes", name): value for name, value in axes.items()}
+    given |= {("constants", name): value for name, value in constants.items()}
+    if CHOICE in file.entries:
+        given[CHOICE,] = file.entries[CHOICE]
     try:
         return _made(room, given)
     except BadInput as error:
