@@ -5,6 +5,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/ready
 
+.PHONY: notebooks package
 .PHONY: help setup bench stress torture study-accuracy study-readings study-real-crowds test lint docs constraints clean
 .DEFAULT_GOAL := help
 
@@ -49,6 +50,16 @@ stress: $(READY)  ## the engine at its edges and 10,000 random scenes: make stre
 
 torture: $(READY)  ## sweeps that are killed, damaged, spread and large: make torture [QUICK=1]
 	@$(BIN)/python -m studies.torture $(if $(QUICK),--quick)
+
+notebooks: $(READY)  ## run studies/notebooks; as .ipynb and .html in results/notebooks
+	@$(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[notebooks]'
+	@.ci/notebooks
+
+package: $(READY)  ## wheel and sdist in dist/, each tried in an empty environment [QUICK=1]
+	@QUICK=$(QUICK) .ci/package
+
+test-%: $(READY)  ## some tests with other versions: make test-minimum, make test-newest [QUICK=1] [JOBS=2]
+	@QUICK=$(QUICK) JOBS=$(JOBS) .ci/versions $*
 
 test: $(READY)  ## all tests
 	@$(BIN)/python -m pytest -n $(JOBS) --dist loadfile
