@@ -15,12 +15,13 @@ import numba
 
 SOURCES = Path(__file__).parent
 FOLDERS_KEPT = 8
+COMMAND = "__main__.py"  # calls the engine, and is no part of it: what it prints changes no run
 
 
 def fingerprint(sources: Path = SOURCES) -> str:
     """Hash of what the package's sources mean: their code without comments and docstrings (16 hex digits)."""
     digest = hashlib.sha256()
-    for path in sorted(sources.rglob("*.py")):
+    for path in sorted(path for path in sources.rglob("*.py") if path.name != COMMAND):
         digest.update(path.relative_to(sources).as_posix().encode())
         digest.update(ast.unparse(_without_docstrings(ast.parse(path.read_text("utf-8")))).encode())
     return digest.hexdigest()[:16]
