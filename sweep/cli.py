@@ -1,7 +1,6 @@
 """The command `jamsweep`."""
 
 import importlib
-import os
 import pkgutil
 import re
 import sys
@@ -22,7 +21,7 @@ from sweep.commands.sweeping import sweep
 from sweep.errors import DamagedFile, SweepStopped
 from sweep.report import tell
 
-BAD_INPUT, INTERRUPTED, UNREAD = 2, 130, 141  # exit codes
+BAD_INPUT, INTERRUPTED = 2, 130  # exit codes
 SETTINGS = {
     "help_option_names": ["-h", "--help"],
     "token_normalize_func": lambda word: word.replace("_", "-"),
@@ -43,9 +42,6 @@ def main(arguments: Sequence[str] | None = None) -> None:
         code = _complain(error.format_message(), error.exit_code)
     except BadInput as error:
         code = _complain(error, BAD_INPUT)
-    except BrokenPipeError:  # as of `jamsweep status results/mine --why | head`
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        code = UNREAD
     except OSError as error:
         code = _complain(f"{error.filename or 'file'}: {error.strerror or error}", BAD_INPUT)
     except (SweepStopped, DamagedFile) as error:

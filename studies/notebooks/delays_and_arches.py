@@ -14,11 +14,11 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-import xarray as xr
 from matplotlib.collections import EllipseCollection, LineCollection
 
 from engine import rooms
 from studies import measures
+from studies.parisi.sweeps import side_by_side
 from studies.presentation import figures
 from sweep import Grid, Store, open_results, read_run, sweep
 from sweep.schema import run_key
@@ -71,15 +71,8 @@ plt.show()
 # side by side.
 
 # %%
-counts = xr.combine_by_coords(
-    [
-        measures.contact_counts(read_run(Store(STORE).file(run_key(grid.scenario(point))))).expand_dims(
-            v_d=[point["v_d"]], seed=[point["seed"]]
-        )
-        for point in grid.points()
-    ],
-    data_vars="all",
-)
+files = [Store(STORE).file(run_key(grid.scenario(point))) for point in grid.points()]
+counts = side_by_side([measures.contact_counts(read_run(file)) for file in files], grid)
 
 # %% [markdown]
 # Share of the time, from the start to each run's last exit, in which there is such a cluster. The interval is a

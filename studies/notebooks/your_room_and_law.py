@@ -21,11 +21,12 @@
 # %%
 import shutil
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 
+import studies
+
 FOLDER = Path("results/notebooks/mine").absolute()
-(installed,) = find_spec("engine").submodule_search_locations  # type: ignore[union-attr]  # it is installed
+installed = Path(studies.__file__).parents[1] / "engine"
 shutil.copytree(installed, FOLDER / "engine", dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__"))
 (FOLDER / "engine" / "laws" / "mine.py").write_text(
     '''"""A power law of one's own."""
