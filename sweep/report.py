@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from importlib.util import find_spec
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
@@ -41,7 +42,7 @@ def progress(total: int, shown: bool = True) -> Iterator[Callable[[float], None]
     console = Console(stderr=True)
     if not shown:
         yield lambda left: None
-    elif console.is_terminal or console.is_jupyter:
+    elif console.is_terminal or (console.is_jupyter and find_spec("ipywidgets")):  # rich warns of a bar without
         with _bar(console) as bar:
             task = bar.add_task("runs", total=total, left="")
             yield lambda left: bar.update(task, advance=1, left=_words(left))

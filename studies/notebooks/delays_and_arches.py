@@ -6,7 +6,7 @@
 # and follow the chain: delays between exits, blocking clusters, arches, and how many of the delays ended when an arch
 # broke.
 #
-# Six seeds and 120 persons keep this short; `make study-parisi` has 200 persons, 14 seeds and all of the paper's
+# Six seeds and 150 persons keep this short; `make study-parisi` has 200 persons, 14 seeds and all of the paper's
 # figures.
 
 # %%
@@ -28,7 +28,7 @@ plt.rcParams.update(figures.STYLE | {"figure.dpi": 150})
 
 # %%
 recorded = {"every": 0.05, "contacts": True, "state": "places"}  # places and contacts are all that is needed here
-grid = Grid(rooms.parisi_room, v_d=[1.0, 4.0], N=120, seed=range(6), **recorded)
+grid = Grid(rooms.parisi_room, v_d=[2.0, 6.0], N=150, seed=range(6), **recorded)
 sweep(grid, STORE, jobs=2)
 ds = open_results(STORE)
 
@@ -41,18 +41,18 @@ ds = open_results(STORE)
 # %%
 facts = measures.clearance(ds)
 mean = measures.mean_over(facts.clearance_time.where(measures.outcome_is(ds, "all_out")), censored=facts.censored)
-mean.to_dataframe().drop(columns="N", errors="ignore").round(2)
+mean.to_dataframe()[list(mean.data_vars)].round(2)
 
 # %% [markdown]
 # ## Delay survival
 #
-# The share of delays longer than t, over all runs of a speed, from the 10th to the 100th exit, where the crowd is
+# The share of delays longer than t, over all runs of a speed, from the 10th to the 120th exit, where the crowd is
 # dense. The bands are intervals of 95 % from a bootstrap that draws whole runs, for the delays of one run depend on
 # each other. A run that stayed blocked has a last wait that nobody ended: it is no delay, and `censored` counts such
 # runs; where that is not 0, the tail is a lower bound.
 
 # %%
-survival = measures.delay_survival(ds, np.arange(0.0, 5.01, 0.05), first=10, last=100)
+survival = measures.delay_survival(ds, np.arange(0.0, 3.01, 0.05), first=10, last=120)
 figure, axis = plt.subplots(figsize=(figures.COLUMN * 1.3, 2.6))
 for v_d, colour in zip(ds.v_d.values, (figures.BLUE, figures.ORANGE), strict=True):
     curve = survival.sel(v_d=v_d)
@@ -93,7 +93,8 @@ large.to_dataframe().round(4)
 #
 # The arch-clogging correlation (Eq. 6) is the share of delays that ended with somebody leaving whose arch had just
 # broken. If arches cause the long delays, it is near 1 for long delays at the high speed. Bins without a delay are
-# empty, and bins with few say so by their interval: look at the numbers of delays before the share.
+# empty, and bins with few say so by their interval: look at the numbers of delays before the share; delays of one run
+# alone have no interval at all.
 
 # %%
 clogging = measures.arch_clogging_correlation(counts).sel(kind="clean")
@@ -103,12 +104,12 @@ clogging[columns].to_dataframe().set_index("delay_end", append=True)[columns].ro
 # %% [markdown]
 # ## Arches of one run
 #
-# The log of one run at 4 m/s: when each clean arch was first seen, how long it lived, and how many persons it had.
+# The log of one run at 6 m/s: when each clean arch was first seen, how long it lived, and how many persons it had.
 # Lifetimes are those of samples, too long or too short by less than the sampling interval; an arch that still stands
 # at the last sample has none (it is censored).
 
 # %%
-run = read_run(Store(STORE).file(run_key(grid.scenario({"v_d": 4.0, "seed": 0}))))
+run = read_run(Store(STORE).file(run_key(grid.scenario({"v_d": 6.0, "seed": 0}))))
 log = measures.arches(run)
 alive, smallest, largest = int(log.lifetime.isnull().sum()), int(log.arch_size.min()), int(log.arch_size.max())
 print(f"{log.sizes['arch']} arches of {smallest} to {largest} persons, {alive} of them alive at the end")
@@ -118,7 +119,7 @@ log[["begin_time", "lifetime", "arch_size"]].to_dataframe().nlargest(5, "lifetim
 # The one that lived longest, as it stood when it was first seen. Its persons are orange; others at the door are grey.
 
 # %%
-longest = int(log.lifetime.argmax())
+longest = int(log.lifetime.argmax("arch"))
 members = np.split(log.arch_person.values, log.arch_size.values.cumsum())[longest]
 frame = run.isel(sample=int(np.abs(run.time.values - float(log.begin_time[longest])).argmin()))
 

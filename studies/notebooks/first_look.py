@@ -52,7 +52,7 @@ ds
 # Persons out against time. Its slope is the flow; a flat piece is a time in which nobody gets through.
 
 # %%
-out = measures.discharge(ds, np.arange(0.0, float(ds.end_time), 0.1)).discharge
+out = measures.discharge(ds, np.arange(0.0, float(ds.end_time) + 0.1, 0.1)).discharge
 figure, axis = plt.subplots(figsize=(figures.COLUMN * 1.3, 2.4))
 axis.plot(out.time, out, color=figures.BLUE)
 axis.set(xlabel="time $t$ / s", ylabel="persons out", xlim=(0, None), ylim=(0, None))
@@ -87,7 +87,7 @@ gaps.to_series().nlargest(5).rename("longest gaps / s").to_frame()
 # one side of the door to the other.
 
 # %%
-waiting = gaps.idxmax()
+waiting = gaps.idxmax("exit")
 middle = float(ds.exit_time.sel(exit=waiting) + gaps.max() / 2)
 sample = int(np.abs(ds.time.values - middle).argmin())
 force = exports.forces_on_persons(ds).contact_force.isel(sample=sample)
