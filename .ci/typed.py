@@ -17,7 +17,7 @@ def shares(store: str) -> xr.DataArray:
     ds: xr.Dataset = sweep(Grid(my_room, v_d=[1.0, 1.4], seed=range(3)), store, jobs=1, timeout=60.0)
     again: xr.Dataset = open_results(store)
     assert ds.sizes == again.sizes
-    return measures.blocked_share(ds).blocked_share
+    return measures.blocked_share(ds)["blocked_share"]
 
 
 run: Run = simulate(my_room())
