@@ -111,6 +111,6 @@ found.to_dataframe()[columns].assign(state=[names[code] for code in found.state.
 # %% [markdown]
 # ## More seeds where they are needed
 #
-# Uniform seeds are wasteful: most cells are settled early. `sweep.sweep_until(grid, store, "blocked_share=0.1,
+# Uniform seeds are wasteful: most cells are settled early. `sweep(grid, store, until="blocked_share=0.1,
 # clearance_time=5%")` gives more seeds to the cells whose intervals are still too wide, and `jamsweep report
 # results/notebooks/speeds` makes a page of what there is.

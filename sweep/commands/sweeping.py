@@ -86,15 +86,13 @@ def sweep(
         else:
             say(found, why)
         return
+    with _until_blamed(file):
+        ds = import_module(RUNNER).sweep(described.grid, kept, until=goals, **manner)
     if goals is None:
-        ds = import_module(RUNNER).sweep(described.grid, kept, **manner)
         _finish(ds, kept, as_json)
         return
-    until = import_module(UNTIL)
-    with _until_blamed(file):
-        ds = until.sweep_until(described.grid, kept, goals, **manner)
     if not as_json:
-        click.echo(until.account(ds))
+        click.echo(import_module(UNTIL).account(ds))
     _finish(ds, kept, as_json, meant=int((ds.seeds_given.max() - ds.seeds_given).sum()))
 
 

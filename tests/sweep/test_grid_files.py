@@ -150,7 +150,7 @@ def manner_of(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
 def test_how_runs_are_run_may_stand_in_the_file_and_the_command_line_wins(manner_of: Any) -> None:
     file = 'jobs = 3\ntimeout = 60\nmemory_limit = "2 GB"\nfail_fast = true\nbackend = "serial"'
     none = manner_of("")
-    assert none == {"jobs": 2, "backend": "loky", "on_code_change": "rerun", "retry": False}
+    assert none == {"jobs": 2, "backend": "loky", "on_code_change": "rerun", "retry": False, "until": None}
     assert manner_of(file) == none | tomllib.loads(file)
     won = {"jobs": 1, "timeout": 5.0, "memory_limit": "1 GB", "fail_fast": False, "backend": "loky"}
     options = ["--jobs", 1, "--timeout", 5, "--memory-limit", "1 GB", "--no-fail-fast", "--backend", "loky"]
