@@ -40,6 +40,7 @@ def jamsweep(*arguments: object) -> int:
         ("# seed = 1\n[axes]\n\nseed = 3\n", 6, "axis seed 3 is not a list"),
         ("[axes]\nv_d = [\n  1.0,\n  nan,\n]\nseed = [1]\n", 4, "v_d nan"),
         ("[axes]\nseed = [1]\n[constants]\nmu = 0.5\nN = 5000\n", 7, "do not fit"),
+        ("[constants]\nsize = 20\nN = 5000\n", 5, "do not fit"),
         ("[constants]\ntau = 1\nL = 0.5\n", 5, "narrower than the largest person"),
         ("[axes]\nN = [5]\n[constants]\ntau = 1\nN = 5\n", 7, "both axis and constant"),
         ("[axes]\nseed = [1]\nwidth = [1]\n[constants]\nheight = 3\n", 5, "'width' is not a keyword"),
