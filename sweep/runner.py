@@ -42,7 +42,7 @@ def sweep(
         value depends on it.
     progress : whether to say how far it is; failing runs are always said
     until : gives each cell only as many of the grid's seeds as its interval needs, in rounds, see
-        `sweep.until.sweep_until`: a rule, or its goals as a table or in words, "clearance_time=5%, blocked_share=0.1,
+        `sweep.until`: a rule, or its goals as a table or in words, "clearance_time=5%, blocked_share=0.1,
         budget=2000", see `studies.until.rules.until_of`
     on_code_change : what becomes of runs that another state of the engine made: "rerun" runs them anew, "accept" takes
         them as they are (`accepted_engines` of the dataset says how many), "error" stops
