@@ -77,6 +77,7 @@ class Grid:
 
     def first_seeds(self, numbers: Mapping[Cell, int]) -> "Grid":
         """The same grid, of which each cell has only the first so many seeds; those not named have none."""
+        _check_seeds(self, numbers)
         part = copy.copy(self)
         part.seeds_of_cells = MappingProxyType(dict(numbers))
         return part
@@ -225,6 +226,16 @@ def _check_names(room: str, function: Room, keywords: Mapping[str, Any]) -> None
     for name, parameter in parameters.items():
         given = name in keywords or parameter.default is not parameter.empty
         require(given, "keyword", repr(name), f"of {room} has no default", "give it a value or an axis")
+
+
+def _check_seeds(grid: Grid, numbers: Mapping[Cell, int]) -> None:
+    known = [set(values) for name, values in grid.axes.items() if name != SEED]
+    most = len(grid.axes.get(SEED, ()))
+    for cell, number in numbers.items():
+        held = len(cell) == len(known) and all(value in values for value, values in zip(cell, known, strict=True))
+        require(held, "cell", cell, "is none of the grid", "name a value of each axis but seed")
+        whole = type(number) is int and 0 <= number <= most
+        require(whole, f"seeds of cell {cell}", repr(number), f"is not a whole number from 0 to {most}", "give one")
 
 
 def _many(given: Any) -> bool:

@@ -266,6 +266,16 @@ def test_a_damaged_grid_of_a_store_is_one_line(tmp_path: Path, torn: str, capsys
     assert "Traceback" not in said
 
 
+@pytest.mark.parametrize("seeds", ['[[1.0, "a"]]', "[[1.0, null]]", "[[1.0, 99]]", "[[9.0, 1]]", "[[]]", "3"])
+def test_damaged_numbers_of_seeds_of_a_grid_are_one_line(
+    tmp_path: Path, seeds: str, capsys: pytest.CaptureFixture
+) -> None:
+    plain = '{"room": "lin_room", "axes": {"v_d": [1.0], "seed": [0]}, "constants": {}, "seeds_of_cells": '
+    (tmp_path / "grid.json").write_text(plain + seeds + "}")
+    assert jamsweep("status", tmp_path) in (1, 2)
+    refused(capsys, "")
+
+
 def test_the_status_of_a_room_of_ones_own_says_so(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     (tmp_path / "grid.json").write_text('{"room": "mine:my_room", "axes": {"N": [3]}, "constants": {}}')
     assert jamsweep("status", tmp_path) == 2

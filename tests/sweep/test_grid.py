@@ -77,3 +77,18 @@ def test_a_room_of_ones_own_works_and_its_needs_are_named() -> None:
     assert Grid(needy_room, N=[5]).shape == (1,)
     with pytest.raises(BadInput, match=r"keyword 'N' of .*needy_room has no default"):
         Grid(needy_room)
+
+
+@pytest.mark.parametrize("numbers", [{(9.0,): 1}, {(): 1}, {(1.0,): -1}, {(1.0,): 3}, {(1.0,): "a"}])
+def test_seeds_of_cells_that_the_grid_has_not_are_refused(numbers: dict) -> None:
+    with pytest.raises(BadInput, match=r"is none of the grid|is not a whole number from 0 to 2"):
+        Grid("lin_room", v_d=[1.0], seed=range(2)).first_seeds(numbers)
+
+
+def test_cells_of_words_and_truth_values_keep_their_seeds_through_json() -> None:
+    grid = Grid("lin_room", v_d=[1, 2.5], inertia=["disc", "none"], contacts=[True, False], seed=range(3), every=1.0)
+    part = grid.first_seeds({(1, "none", False): 2, (2.5, "disc", True): 1})
+    again = Grid.from_json(part.to_json())
+    assert len(again) == 3 == len(list(again.points()))
+    assert list(again.points()) == list(part.points())
+    assert again.to_json() == Grid.from_json(again.to_json()).to_json()
