@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from engine import FINGERPRINT
+from engine import FINGERPRINT, BadInput
 from sweep import schema
 from sweep.errors import DamagedFile
 from sweep.grid import Grid
@@ -75,8 +75,9 @@ def collect(grid: Grid, store: Path | str | Store, on_code_change: str = RERUN) 
     served = serving(wanted, store, on_code_change)
     content = served.content(wanted, grid.to_json())
     if is_made_of(store, content):
-        with suppress(DamagedFile):  # it can be made again
-            return Gathered(open_results(store.path), 0)
+        kept = _of_content(content, store)
+        if kept is not None:
+            return Gathered(kept, 0)
     rows, aside = _rows(wanted, served, store)
     whole = Serving({key: entry for key, entry in served.entries.items() if rows[key]}, served.stale)
     of = {tuple(point.values()): rows[w.key] for w, point in zip(wanted, grid.points(), strict=True)}
@@ -91,7 +92,16 @@ def _kept(ds: xr.Dataset, store: Store) -> xr.Dataset:
     except OSError as error:
         tell(f"the dataset is not kept in '{store.path}' ({(error.strerror or 'refused').lower()})")
         return ds
-    return open_results(store.path)
+    kept = _of_content(ds.attrs[CONTENT], store)
+    return ds if kept is None else kept
+
+
+def _of_content(content: str, store: Store) -> xr.Dataset | None:
+    """The dataset of a store; None if it is damaged, or another sweep put that of its own grid there meanwhile."""
+    with suppress(BadInput, DamagedFile, OSError):
+        ds = open_results(store.path)
+        return ds if ds.attrs[CONTENT] == content else None
+    return None
 
 
 def _rows(wanted: list[Wanted], served: Serving, store: Store) -> tuple[dict[str, Facts | None], int]:

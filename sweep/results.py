@@ -37,9 +37,10 @@ def open_results(path: Path | str, chunks: Mapping[str, int] | str | int | None 
     require(store.dataset.is_file(), "store", f"'{store.path}'", "holds no gathered dataset", remedy)
     able = chunks is None or find_spec("dask") is not None
     require(able, "chunks", chunks, "take dask, which is not installed", "pip install 'jamsweep[dask]'")
+    found = sha256_of(store.dataset)  # first: what is gathered meanwhile is vouched for before it has its name
     vouched = store.vouched.datasets()
     damaged = f"dataset '{store.dataset}' is damaged: delete it and gather again"
-    if vouched and sha256_of(store.dataset) not in vouched:
+    if vouched and found not in vouched:
         raise DamagedFile(damaged)
     try:
         return _opened(store.dataset, chunks)

@@ -153,3 +153,13 @@ def test_a_damaged_dataset_is_named(tmp_path: Path) -> None:
     (tmp_path / "dataset.nc").write_bytes(b"no netCDF")
     with pytest.raises(DamagedFile, match=r"dataset.nc' is damaged"):
         open_results(tmp_path)
+
+
+def test_a_sweep_of_another_grid_into_the_store_meanwhile_is_not_taken_for_ones_own(
+    grid: Grid, store: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own, other = sweep(grid, store, jobs=1), Grid("lin_room", v_d=[1.0], seed=[0], **TINY)
+    theirs = gather(other, store)
+    monkeypatch.setattr("sweep.gathering.open_results", lambda path: theirs)
+    assert gather(grid, store).sizes == own.sizes
+    assert gather(grid, store).sizes == own.sizes
