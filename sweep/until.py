@@ -149,9 +149,10 @@ class Cells:
         for point in points:
             require(set(point) == set(self.axes), "refined cell", point, "does not name each axis", "name them all")
             room = until.budget is None or self.runs + self._bare() * until.least + until.least <= until.budget
-            if room and self.grid.cell(point) not in self.seeds:
-                self.seeds[self.grid.cell(point)] = 0
-                self.axes |= {name: _with(self.axes[name], value) for name, value in point.items()}
+            (plain,) = self.grid.over(**{n: [v] for n, v in point.items()}, **{SEED: self.supply[:1]}).points()
+            if room and self.grid.cell(plain) not in self.seeds:
+                self.seeds[self.grid.cell(plain)] = 0
+                self.axes |= {name: _with(values, plain[name]) for name, values in self.axes.items()}
 
     def _bare(self) -> int:
         return sum(not seeds for seeds in self.seeds.values())
@@ -208,6 +209,8 @@ def _check(grid: Grid, until: Until) -> None:
 
 def _from_words(given: str | Mapping[str, Any]) -> Until:
     """The rule that a table, or words such as "clearance_time=5%, budget=500", describe."""
+    known = isinstance(given, str | Mapping)
+    require(known, "until", repr(given), "is no rule, table or words", "write 'clearance_time=5%, blocked_share=0.1'")
     table = _table(given) if isinstance(given, str) else given
     made: Until = importlib.import_module(RULES).until_of(table)
     return made

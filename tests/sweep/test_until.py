@@ -273,3 +273,21 @@ def test_a_failing_run_is_named_by_its_parameters_and_the_rounds_go_on(store, ca
 
 def fixed_of_N(ds: xr.Dataset) -> xr.DataArray:
     return 4.0 / (ds.outcome > 0).sum("seed")
+
+
+def test_refined_cells_may_be_named_by_numbers_of_numpy(store):
+    def refine(ds):
+        return [{"v_d": np.float32(1.25), "N": np.int64(6)}]
+
+    both = Grid("lin_room", v_d=list(V_D), seed=range(3), **{**TINY, "N": [5]})
+    until = Until(lambda ds: (ds.outcome > 0).sum("seed") * 0.0, least=2, refine=refine)
+    ds = sweep_until(both, store, until, 1)
+    assert ds.seeds_given.sel(v_d=1.25, N=6) == 2
+    assert ds.attrs["runs_given"] == 8 == len(run_files(store))
+
+
+@pytest.mark.parametrize("until", [5, ["clearance_time=5%"], True])
+def test_what_is_no_rule_is_refused_before_anything_is_made(until, store):
+    with pytest.raises(BadInput, match="is no rule, table or words"):
+        sweep_until(grid(), store, until, 1)
+    assert not store.exists()
