@@ -231,6 +231,7 @@ def _check_names(room: str, function: Room, keywords: Mapping[str, Any]) -> None
 def _check_seeds(grid: Grid, numbers: Mapping[Cell, int]) -> None:
     known = [set(values) for name, values in grid.axes.items() if name != SEED]
     most = len(grid.axes.get(SEED, ()))
+    require(len(numbers) > 0, "cells", "{}", "are none", "name one")
     for cell, number in numbers.items():
         held = len(cell) == len(known) and all(value in values for value, values in zip(cell, known, strict=True))
         require(held, "cell", cell, "is none of the grid", "name a value of each axis but seed")

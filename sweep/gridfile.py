@@ -229,8 +229,9 @@ def _span(name: str, given: dict[str, Any]) -> list[Any]:
     fits = 1.0 <= count <= MOST_VALUES
     zero = "makes a grid of zero runs" if count < 1.0 else f"has more than {MOST_VALUES} values"
     require(fits, f"axis {name}", given, zero, "give a last that is not below first and not too far")
-    values = first + step * np.arange(int(count))
-    return (values if whole else np.round(values, 12)).tolist()  # 1.0, not 1.0000000000000002
+    if whole:
+        return list(range(first, last + 1, step))
+    return np.round(first + step * np.arange(int(count)), 12).tolist()  # 1.0, not 1.0000000000000002
 
 
 def _constant(name: str, given: Any) -> Any:

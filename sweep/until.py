@@ -81,8 +81,7 @@ def sweep_until(grid: Grid, store: Store, until: Until | str | Mapping[str, Any]
     SweepStopped
         See `sweep.sweep`; finished runs are kept, and the same call goes on from there.
     """
-    until = until if isinstance(until, Until) else _from_words(until)
-    _check(grid, until)
+    until = rule_of(grid, until)
     store, cells = opened(store), Cells(grid, until.least)
     while True:
         ds = cells.counted(complete(cells.given(), store, way))
@@ -96,6 +95,31 @@ def sweep_until(grid: Grid, store: Store, until: Until | str | Mapping[str, Any]
         cells.give(wanted)
         if way.manner.shown:
             tell(f"{cells.runs} runs: {len(wanted)} of {len(cells.seeds)} cells get more seeds")
+
+
+def rule_of(grid: Grid, given: Until | str | Mapping[str, Any]) -> Until:
+    """The rule for a grid.
+
+    Raises
+    ------
+    BadInput
+        If the words are none, or the grid has too few seeds, or the budget does not reach for the first round.
+    """
+    until = given if isinstance(given, Until) else _from_words(given)
+    require(SEED in grid.axes, "grid", repr(grid), "has no axis seed", "give seed=range(100), the most for any cell")
+    seeds = len(grid.axes[SEED])
+    least = until.least
+    require(seeds >= least, "grid", f"with {seeds} seeds", f"has fewer than until's least, {least}", "give more seeds")
+    first = least * (len(grid) // seeds)
+    enough = until.budget is None or until.budget >= first
+    remedy = "raise the budget, or lower least or the number of cells"
+    require(enough, "until: budget", until.budget, f"is below the first round of {first} runs", remedy)
+    return until
+
+
+def first_round(grid: Grid, given: Until | str | Mapping[str, Any]) -> Grid:
+    """The runs that are made before anything is decided."""
+    return Cells(grid, rule_of(grid, given).least).given()
 
 
 class Cells:
@@ -194,17 +218,6 @@ def _with(values: tuple[Scalar, ...], value: Scalar) -> tuple[Scalar, ...]:
     numbers = [v for v in (*values, value) if isinstance(v, int | float)]
     ascending = len(numbers) > len(values) and numbers[:-1] == sorted(numbers[:-1])
     return tuple(sorted(numbers)) if ascending else (*values, value)
-
-
-def _check(grid: Grid, until: Until) -> None:
-    require(SEED in grid.axes, "grid", repr(grid), "has no axis seed", "give seed=range(100), the most for any cell")
-    seeds = len(grid.axes[SEED])
-    least = until.least
-    require(seeds >= least, "grid", f"with {seeds} seeds", f"has fewer than until's least, {least}", "give more seeds")
-    first = least * (len(grid) // seeds)
-    enough = until.budget is None or until.budget >= first
-    remedy = "raise the budget, or lower least or the number of cells"
-    require(enough, "until: budget", until.budget, f"is below the first round of {first} runs", remedy)
 
 
 def _from_words(given: str | Mapping[str, Any]) -> Until:

@@ -12,7 +12,7 @@ from engine.rooms import ROOMS
 from sweep.commands.run import parameter_words
 from sweep.grid import SEED, Room
 from sweep.schema import PARAMETERS
-from sweep.storage.durable import replace_durably, require_writable
+from sweep.storage.durable import replace_durably, require_target
 
 SHELLS = ("bash", "zsh", "fish")
 PROGRAM, VARIABLE = "jamsweep", "_JAMSWEEP_COMPLETE"  # by which click knows that it is asked
@@ -64,7 +64,7 @@ def init(file: Path, room: str, store: str, force: bool) -> None:
     plain = store.isprintable() and not set(store) & set('"\\') and store != ""
     require(plain, "store", repr(store), "is no plain path", "name a folder")
     require(force or not file.exists(), "file", f"'{file}'", "is there already", "name another, or give --force")
-    require_writable(file.absolute().parent, "output folder")
+    require_target(file)
     text = example(name, str(file), store)
     replace_durably(file, lambda temporary: temporary.write_text(text, "utf-8"))
     click.echo(str(file))

@@ -10,7 +10,7 @@ from engine import BadInput
 from engine.errors import require
 from sweep import extras
 from sweep.errors import DamagedFile
-from sweep.storage.durable import replace_durably, require_writable
+from sweep.storage.durable import replace_durably, require_target
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -40,7 +40,7 @@ def export(source: Path, target: Path, rows: str, unit: str) -> None:
     """  # noqa: D301  click reads \b as a character
     suffix, known = target.suffix.lower(), [*TRAJECTORIES, *TABLES]
     require(suffix in known, "file", f"'{target}'", "has no suffix of an export", f"choose one of {', '.join(known)}")
-    require_writable(target.absolute().parent, "output folder")
+    require_target(target)
     ds = _dataset(source, single=suffix in TRAJECTORIES or rows in FORCES)
     if suffix in TRAJECTORIES:
         TRAJECTORIES[suffix](ds, target, unit)

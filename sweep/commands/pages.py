@@ -9,7 +9,7 @@ import click
 
 from engine.errors import BadInput, require
 from sweep.errors import DamagedFile
-from sweep.storage.durable import replace_durably, require_writable
+from sweep.storage.durable import replace_durably, require_target
 from sweep.storage.store import Store
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def view(
         right = film is None or film.suffix.lower() == ending
         require(right, "film", f"'{film}'", f"does not end in {ending}", "name it so")
     for film in films:
-        require_writable(film.absolute().parent, "output folder")
+        require_target(film)
         write_film(run, film, rate, colour)
         click.echo(str(film))
     if output or show or not films:
@@ -107,7 +107,7 @@ def _stride(run: "xr.Dataset", every: int | None) -> int:
 
 
 def _write_page(text: str, path: Path, show: bool) -> None:
-    require_writable(path.absolute().parent, "output folder")
+    require_target(path)
     replace_durably(path, lambda temporary: temporary.write_text(text, "utf-8"))
     click.echo(str(path))
     if show:

@@ -13,7 +13,7 @@ from engine.errors import require
 from engine.rooms import ROOMS
 from sweep.grid import Room, plain_kind
 from sweep.schema import PARAMETERS, run_key
-from sweep.storage.durable import require_writable
+from sweep.storage.durable import require_target
 from sweep.storage.runfile import write_run
 
 
@@ -58,9 +58,7 @@ def _room_command(name: str, room: Room) -> click.Command:
 
 def _run_once(scenario: Scenario, output: Path | None, as_json: bool) -> None:
     if output is not None:
-        named = output.name != "" and output.name.isprintable()
-        require(named, "output", repr(str(output)), "is not the name of a file", "name the netCDF file to write")
-        require_writable(output.absolute().parent, "output folder")
+        require_target(output)
     result = simulate(scenario)
     if output:
         write_run(result, output)

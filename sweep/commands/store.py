@@ -11,7 +11,7 @@ from engine.errors import require
 from sweep.errors import DamagedFile
 from sweep.grid import Grid
 from sweep.status import DONE, Status, status_of
-from sweep.storage.durable import require_writable
+from sweep.storage.durable import require_target
 from sweep.storage.serving import ON_CODE_CHANGE, RERUN
 from sweep.storage.store import CORRUPT, Store, sizes_in
 
@@ -76,7 +76,7 @@ def gather(store: Path, output: Path | None, on_code_change: str | None) -> None
     from sweep.gathering import collect  # xarray takes a second, which `status` need not wait for
 
     if output:
-        require_writable(output.absolute().parent, "output folder")
+        require_target(output)
     kept = Store(store)
     kept.check()
     gathered = collect(grid_of(kept), kept, on_code_change or RERUN)
@@ -138,9 +138,12 @@ def grid_of(store: Store) -> Grid:
     """
     remedy = "name the folder of a sweep"
     require(store.grid.is_file(), "store", f"'{store.path}'", "holds no sweep", remedy)
+    own = False
     try:
-        return Grid.from_json(store.grid.read_text("utf-8"))
-    except BadInput as error:
-        raise BadInput(f"{error} (sweep.open_results opens the dataset from Python)") from None
-    except (ValueError, KeyError, TypeError):  # of JSON, of UTF-8, or no grid
+        text = store.grid.read_text("utf-8")
+        own = ":" in json.loads(text)["room"]
+        return Grid.from_json(text)
+    except (ValueError, KeyError, TypeError, RecursionError) as error:  # of JSON, of UTF-8, or no grid
+        if isinstance(error, BadInput) and own:
+            raise BadInput(f"{error} (sweep.open_results opens the dataset from Python)") from None
         raise DamagedFile(f"grid '{store.grid}' is damaged: sweep again, which writes it anew") from None

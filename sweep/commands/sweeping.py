@@ -80,11 +80,17 @@ def sweep(
     goals = read_until(file)
     if dry_run:
         kept.check()
-        found = status_of(described.grid, kept, choice)
+        grid = described.grid
+        if goals is not None:
+            with _until_blamed(file):
+                grid = import_module(UNTIL).first_round(grid, goals)
+        found = status_of(grid, kept, choice)
         if as_json:
             click.echo(json.dumps({"runs": len(found.runs), "states": found.counts()}))
         else:
             say(found, why)
+            if goals is not None:
+                click.echo("these are the first round; cells get more seeds as their intervals need them")
         return
     with _until_blamed(file):
         ds = import_module(RUNNER).sweep(described.grid, kept, until=goals, **manner)

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from engine import BadInput
+from engine.errors import require
 
 BLOCK = 2**20  # bytes: what a disk must take to be one with room
 MARK = re.compile(r"\.(?P<name>.+)\.~(?P<host>[^~]+)~(?P<pid>\d+)~(?P<start>\d+)~[0-9a-f]{8}\.tmp")
@@ -187,6 +188,13 @@ def require_writable(folder: Path, thing: str) -> None:
         tempfile.TemporaryFile(dir=folder).close()
     except OSError as error:
         refuse(folder, thing, error)
+
+
+def require_target(path: Path, thing: str = "output") -> None:
+    """Raise `BadInput` unless this is the name of a file, in a folder that can be written to."""
+    named = path.name != "" and path.name.isprintable()
+    require(named, thing, repr(str(path)), "is not the name of a file", "name the file to write")
+    require_writable(path.absolute().parent, f"{thing} folder")
 
 
 def refuse(path: Path, thing: str, error: OSError) -> NoReturn:

@@ -257,7 +257,21 @@ def test_an_output_without_a_name_is_refused_before_the_run(capsys: pytest.Captu
     assert "is not the name of a file" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("torn", ["", "{", "[]", "{}"])
+@pytest.mark.parametrize("command", ["gather", "report"])
+def test_an_output_of_a_store_without_a_name_is_refused(
+    command: str, tmp_path: Path, capsys: pytest.CaptureFixture
+) -> None:
+    path = grid_file(tmp_path)
+    assert jamsweep("sweep", path, "--jobs", 1) == 0
+    capsys.readouterr()
+    assert jamsweep(command, tmp_path / "results", "-o", "") == 2
+    refused(capsys, "is not the name of a file")
+
+
+NO_SPEEDS = '{"room": "lin_room", "axes": {"v_d": []}, "constants": {}}'
+
+
+@pytest.mark.parametrize("torn", ["", "{", "[]", "{}", "[" * 100_000, '{"room": 3}', NO_SPEEDS])
 def test_a_damaged_grid_of_a_store_is_one_line(tmp_path: Path, torn: str, capsys: pytest.CaptureFixture) -> None:
     (tmp_path / "grid.json").write_text(torn)
     assert jamsweep("status", tmp_path) == 1

@@ -46,6 +46,7 @@ def jamsweep(*arguments: object) -> int:
         ("[axes]\nseed = [1]\nwidth = [1]\n[constants]\nheight = 3\n", 5, "'width' is not a keyword"),
         ('on_code_change = "x"\n', 3, "on_code_change 'x'"),
         ("common_random_numbers = 1\n", 3, "common_random_numbers 1 is not true or false"),
+        (f"[axes]\nseed = {{ first = {10**20}, last = {10**20}, step = 1 }}\n", 4, f"seed {10**20}"),
     ],
 )
 def test_what_is_wrong_is_said_with_its_line(tmp_path: Path, rest: str, line: int, words: str) -> None:
@@ -68,6 +69,21 @@ def test_a_wrong_goal_is_said_with_its_line(tmp_path: Path, capsys: pytest.Captu
         path = grid_file(tmp_path, f"[axes]\nseed = {{ first = 0, last = 19, step = 1 }}\n\n[until]\n{goal}\n")
         assert jamsweep("sweep", path) == 2
         assert capsys.readouterr().err.startswith(f"jamsweep: {path}:{line}: until: ")
+
+
+def test_a_dry_run_refuses_a_wrong_goal_and_counts_the_first_round(
+    tmp_path: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    rest = (
+        "[axes]\nv_d = [0.8, 1.4]\nseed = { first = 0, last = 39, step = 1 }\n[until]\nblocked_share = %s\nleast = 5\n"
+    )
+    assert jamsweep("sweep", grid_file(tmp_path, rest % "nan"), "--dry-run") == 2
+    assert "grid.toml:7: until: blocked_share nan" in capsys.readouterr().err
+    assert jamsweep("sweep", grid_file(tmp_path, rest % "0.1"), "--dry-run") == 0
+    told = capsys.readouterr().out
+    assert "10 runs: 0 done, 10 to do" in told
+    assert "first round" in told
 
 
 def test_every_entry_is_found_where_a_reader_sees_it() -> None:
