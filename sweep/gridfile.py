@@ -112,7 +112,7 @@ def where(path: Path, *key: str) -> str:
 
 
 def _opened(path: Path) -> TomlFile:
-    file = TomlFile(path, "grid file")
+    file = TomlFile(path, "grid file", "name a TOML file; `jamsweep init` writes one")
     for name in file.entries:
         with file.blamed(name):
             require(name in PARTS, "entry", repr(name), "is not known", f"keep to {', '.join(PARTS)}")

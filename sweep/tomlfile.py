@@ -19,6 +19,7 @@ class TomlFile:
     ----------
     path : of the file
     kind : what it is to the user, as the message of one that cannot be read begins
+    remedy : what helps if it is not there
 
     Attributes
     ----------
@@ -30,14 +31,14 @@ class TomlFile:
         If it cannot be read or is no TOML; the line is named.
     """
 
-    def __init__(self, path: Path, kind: str) -> None:
+    def __init__(self, path: Path, kind: str, remedy: str = "name a TOML file") -> None:
         self.path = path
         try:
             self._text = path.read_text("utf-8")
             self.entries: dict[str, Any] = tomllib.loads(self._text)
         except OSError as error:
             why = (error.strerror or "refused").lower()
-            raise BadInput(f"{kind} '{path}' cannot be read ({why}): name a TOML file") from None
+            raise BadInput(f"{kind} '{path}' cannot be read ({why}): {remedy}") from None
         except UnicodeDecodeError as error:
             line = 1 + error.object[: error.start].count(b"\n")
             raise BadInput(f"{path}:{line}: {kind} is no valid TOML (not UTF-8): mend it") from None

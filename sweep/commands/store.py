@@ -123,7 +123,8 @@ def compact(store: Path) -> None:
 
     done = compacted(store)
     sizes = f"{done.before / 1e6:.1f} MB became {done.after / 1e6:.1f} MB"
-    click.echo(f"{done.runs} runs folded into {done.shards} shards: {sizes}" if done.runs else "nothing to fold")
+    into = f"{done.shards} shard{'s' * (done.shards != 1)}"
+    click.echo(f"{done.runs} runs folded into {into}: {sizes}" if done.runs else "nothing to fold")
 
 
 def grid_of(store: Store) -> Grid:

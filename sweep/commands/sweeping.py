@@ -66,6 +66,7 @@ def sweep(
     [until]                      # not needed: as many of the seeds in each cell as its interval needs
     clearance_time = 0.05        # half-width of the mean over itself, in the smooth state
     blocked_share = 0.1          # half-width
+    resolution = 0.1             # m/s: new cells where a boundary between states is undecided
     budget = 2000                # runs
     [running]                    # not needed: as the options, which win
     jobs = 4

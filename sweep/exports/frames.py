@@ -79,7 +79,7 @@ def frames(run: xr.Dataset) -> Frames:
 def check_recorded(run: xr.Dataset) -> None:
     """Raise `BadInput` unless this is one run with samples."""
     absent = [name for name in NEEDED if name not in run.variables]
-    remedy = "record it with every=0.1 and read it with sweep.read_run"
+    remedy = "record it with every=0.1 (in a shell: --every 0.1) and read it with sweep.read_run"
     require(not absent, "run", f"without {', '.join(absent)}", "has no trajectories", remedy)
     single = run["x"].ndim == 2 and run["exit_time"].ndim == 1
     require(single, "dataset", f"of dimensions {', '.join(map(str, run.dims))}", "is not one run", "pass a single run")

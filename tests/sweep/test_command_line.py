@@ -194,7 +194,7 @@ def test_a_study_gets_its_options(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         (["run", "lin_room", "--reading", "Q"], "reading 'Q' is not known"),
         (["run", "lin_room", "--width", "1"], "No such option"),
         (["run", "lin_room", "-o", "/proc/run.nc"], "output folder '/proc' cannot be written to"),
-        (["sweep", "/nowhere/grid.toml"], "cannot be read"),
+        (["sweep", "/nowhere/grid.toml"], "name a TOML file; `jamsweep init` writes one"),
         (["status", "/nowhere"], "holds no sweep"),
         (["gather", "/nowhere"], "holds no sweep"),
         (["wander"], "No such command"),
