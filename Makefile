@@ -10,7 +10,7 @@ READY := $(VENV)/ready
 .DEFAULT_GOAL := help
 
 help:  ## this list
-	@grep -hE '^[a-z%-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 16
+	@grep -hE '^[a-z%-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*##/\t/' | expand -t 20
 
 setup: $(READY)  ## the environment in .venv, from pinned versions
 
@@ -42,7 +42,7 @@ study-readings: $(READY)  ## readings of Lin's paper against its numbers: make s
 study-real-crowds: $(READY)  ## real crowds beside simulated ones: make study-real-crowds DATA=folder [QUICK=1] [JOBS=2]
 	@$(BIN)/python -m studies.real_crowds --jobs $(JOBS) $(if $(QUICK),--quick) $(if $(DATA),--data '$(DATA)')
 
-bench: $(READY)  ## this engine beside its peers: make bench [QUICK=1]; $(BIN)/pip install -e '.[bench]' brings them
+bench: $(READY)  ## this engine beside its peers: make bench [QUICK=1]; .venv/bin/pip install -e '.[bench]' brings them
 	@$(BIN)/python -m studies.bench $(if $(QUICK),--quick) $(if $(DOCS),--docs)
 
 stress: $(READY)  ## the engine at its edges and 10,000 random scenes: make stress [QUICK=1] [JOBS=2]
