@@ -28,7 +28,7 @@ def read_run(path: Path | str) -> xr.Dataset:
         folded = _unfolded(store, path.stem)
         if folded is not None:
             return folded
-    remedy = f"name a run file, such as one of {path / 'runs'}"
+    remedy = f"name a run file, such as one of those in {path / 'runs'}"
     require(not path.is_dir(), "run file", f"'{path}'", "is a folder", remedy)
     require(path.is_file(), "run file", f"'{path}'", "does not exist", "name a file that a run was written to")
     if store:

@@ -57,7 +57,7 @@ def test_view_refuses_what_it_cannot_play(file: Path, tmp_path: Path, capsys: py
     for path in (cut, words):
         assert f"run file '{path}' cannot be read: it is damaged, or none of a run" in refused(capsys, "view", path)
     assert "does not exist" in refused(capsys, "view", tmp_path / "none.nc")
-    assert "is a folder: name a run file, such as one of " in refused(capsys, "view", tmp_path)
+    assert "is a folder: name a run file, such as one of those in " in refused(capsys, "view", tmp_path)
     assert "every 0 is not a whole number above 0" in refused(capsys, "view", file, "--every", 0)
     assert "output folder" in refused(capsys, "view", file, "-o", tmp_path / "no" / "run.html")
     assert not list(tmp_path.glob("*.html"))
