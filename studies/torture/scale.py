@@ -117,7 +117,8 @@ def _spent(call: Callable[..., object], *arguments: object) -> float:
 class Watched(Execution):
     """An execution that notes what the parent holds after so many runs."""
 
-    few, held = 0, [0.0]
+    few: int
+    held: list[float]
 
     def _note(self, result: Result) -> None:
         super()._note(result)

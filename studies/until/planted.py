@@ -60,7 +60,7 @@ def only(ds: xr.Dataset, given: xr.DataArray) -> xr.Dataset:
 
 
 def settled(ds: xr.Dataset, until: Until) -> NDArray[np.int64]:
-    """Seeds (copies,) that `a sweep` gives each cell of planted data, with no budget."""
+    """Seeds (copies,) that a sweep gives each cell of planted data, with no budget."""
     place, supply = xr.DataArray(np.arange(ds.sizes["seed"]), dims="seed"), ds.sizes["seed"]
     given = xr.zeros_like(ds.outcome.isel(seed=0, drop=True), dtype=np.int64) + until.least
     while True:

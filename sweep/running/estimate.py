@@ -17,6 +17,7 @@ class Durations:
     """
 
     def __init__(self, grid: Grid) -> None:
+        self.cell = grid.cell
         self._axes = [name for name in grid.axes if name != SEED]
         self._rank = {name: _ranks(grid.axes[name]) for name in self._axes}
         self._sums: dict[Cell, tuple[float, int]] = {}
@@ -42,10 +43,6 @@ class Durations:
         """The order in which to run points, as indices; that given, where nothing tells."""
         expected = [self.expected(point) for point in points]
         return sorted(range(len(expected)), key=lambda k: -expected[k] if expected[k] > 0.0 else 0.0)
-
-    def cell(self, point: Point) -> Cell:
-        """What runs that differ only in their seed share."""
-        return tuple(point[name] for name in self._axes)
 
     def _mean(self, cell: Cell) -> float:
         if not self._sums:

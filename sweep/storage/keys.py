@@ -50,7 +50,7 @@ def _canonical(grid: Grid) -> Iterator[str]:
         return
     cells: dict[tuple[object, ...], tuple[str, str]] = {}
     for point in grid.points():
-        cell = tuple(value for name, value in point.items() if name != SEED)
+        cell = grid.cell(point)
         if cell not in cells:
             cells[cell] = _around_seed(grid, point)
         before, after = cells[cell]
