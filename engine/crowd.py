@@ -2,30 +2,12 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-from numba import njit
 
 from engine.errors import finite, require
-
-PERSONS, PLACEMENT, MOTION = 0, 1, 2  # independent random streams of one seed
-MAX_ROUNDS = 2000  # of placement: each round every person without a place tries a new one
-
-Range = tuple[float, float]
-
-
-class Start(NamedTuple):
-    """The state of N persons at the start, each an array (N,)."""
-
-    x: np.ndarray  # m
-    y: np.ndarray  # m
-    vx: np.ndarray  # m/s
-    vy: np.ndarray  # m/s
-    spin: np.ndarray  # rad/s
-    radius: np.ndarray  # m
-    mass: np.ndarray  # kg
-    v_d: np.ndarray  # m/s
+from engine.kernel.placement import Range, Start, draw_uniform
 
 
 @dataclass(frozen=True)
@@ -45,15 +27,12 @@ class Uniform:
         return self.radius[1]
 
     def draw(self, seed: int, walls: np.ndarray) -> Start:
-        """The crowd of this seed among these walls (rows of `SceneArrays.walls`)."""
-        persons = _stream(seed, PERSONS)
-        radius = persons.uniform(*self.radius, self.N)
-        mass = persons.uniform(*self.mass, self.N)
-        v_d = persons.uniform(*self.v_d, self.N)
-        x, y = _place(radius, self.area, walls, _stream(seed, PLACEMENT))
-        motion = _stream(seed, MOTION)
-        speed, angle = motion.uniform(*self.speed, self.N), motion.uniform(0.0, 2.0 * math.pi, self.N)
-        return Start(x, y, speed * np.cos(angle), speed * np.sin(angle), np.zeros(self.N), radius, mass, v_d)
+        """The crowd of this seed among these walls (`SceneArrays.walls`)."""
+        start = draw_uniform(seed, self.N, self.area, self.radius, self.mass, self.v_d, self.speed, walls)
+        x0, x1, y0, y1 = self.area
+        fraction = float(np.sum(np.pi * start.radius**2)) / ((x1 - x0) * (y1 - y0))
+        _require_room(not np.isnan(start.x).any(), self.N, fraction, self.area)
+        return start
 
 
 @dataclass(frozen=True)
@@ -145,9 +124,9 @@ class Crowd:
             bad = [v for v in np.broadcast_to(values, N) if not _holds(v, least)]
             require(not bad, name, bad[0] if bad else "", f"is not finite and {least}", "mend the array")
         crowd = Given(*(tuple(np.broadcast_to(values, N).astype(float).tolist()) for values in arrays.values()))
-        places = list(zip(crowd.x, crowd.y, strict=True))
-        twice = next((place for place in places if places.count(place) > 1), None) if len(set(places)) < N else None
-        require(twice is None, "place", twice, "is given to two persons", "move one of them")
+        positions = list(zip(crowd.x, crowd.y, strict=True))
+        twice = next((p for p in positions if positions.count(p) > 1), None) if len(set(positions)) < N else None
+        require(twice is None, "position", twice, "is given to two persons", "move one of them")
         return crowd
 
 
@@ -168,83 +147,21 @@ def _range(name: str, given: Any, unit: str, positive: bool = False) -> Range:
     return low, high
 
 
-def _stream(seed: int, stream: int) -> np.random.Generator:
-    return np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(stream,)))
-
-
 def _fits(crowd: Uniform) -> None:
     """Refuse what cannot fit at all: more disc area than the densest packing of discs covers."""
     x0, x1, y0, y1 = crowd.area
     least = crowd.N * math.pi * crowd.radius[0] ** 2
-    share = least / ((x1 - x0) * (y1 - y0))
-    room = min(x1 - x0, y1 - y0) >= 2 * crowd.radius[1] and share <= math.pi / math.sqrt(12.0)
-    _require_room(room, crowd.N, share, crowd.area)
+    fraction = least / ((x1 - x0) * (y1 - y0))
+    room = min(x1 - x0, y1 - y0) >= 2 * crowd.radius[1] and fraction <= math.pi / math.sqrt(12.0)
+    _require_room(room, crowd.N, fraction, crowd.area)
 
 
-def _require_room(holds: bool, N: int, share: float, area: tuple[float, float, float, float]) -> None:
+def _require_room(holds: bool, N: int, fraction: float, area: tuple[float, float, float, float]) -> None:
     where = f"{area[1] - area[0]:g} x {area[3] - area[2]:g} m"
     require(
         holds,
         "N",
         N,
-        f"persons do not fit at random into {where} without overlap (they cover {share:.0%} of it)",
+        f"persons do not fit at random into {where} without overlap (they cover {fraction:.0%} of it)",
         "reduce N or the radii, or enlarge the room (up to about 45 % can be placed)",
     )
-
-
-def _place(
-    radius: np.ndarray, area: tuple[float, float, float, float], walls: np.ndarray, rng: np.random.Generator
-) -> tuple[np.ndarray, np.ndarray]:
-    """Random sequential placement: rounds in which all who wait try one place each."""
-    x0, x1, y0, y1 = area
-    N = radius.size
-    size = max(2.0 * float(radius.max()), math.sqrt((x1 - x0) * (y1 - y0) / (4.0 * N + 16.0)))  # of a cell
-    x, y = np.full(N, np.nan), np.full(N, np.nan)
-    first = np.full((int((x1 - x0) / size) + 3, int((y1 - y0) / size) + 3), -1, np.int64)  # person in each cell
-    following = np.full(N, -1, np.int64)  # the next person in the same cell
-    waiting = np.arange(N)
-    for _ in range(MAX_ROUNDS):
-        u, v = rng.random(waiting.size), rng.random(waiting.size)
-        r = radius[waiting]
-        tried_x, tried_y = x0 + r + u * (x1 - x0 - 2 * r), y0 + r + v * (y1 - y0 - 2 * r)
-        _try_places(waiting, tried_x, tried_y, x, y, radius, walls, first, following, x0, y0, size)
-        waiting = waiting[np.isnan(x[waiting])]
-        if not waiting.size:
-            return x, y
-    share = float(np.sum(np.pi * radius**2)) / ((x1 - x0) * (y1 - y0))
-    _require_room(False, N, share, area)
-    raise AssertionError("unreachable")
-
-
-@njit(cache=True)
-def _try_places(who, tried_x, tried_y, x, y, radius, walls, first, following, x0, y0, size):
-    """Give each of `who` the tried place if nobody and no wall is in the way; nan in x: no place yet."""
-    for k in range(who.size):
-        i, px, py = who[k], tried_x[k], tried_y[k]
-        cx, cy = int((px - x0) / size) + 1, int((py - y0) / size) + 1
-        free = _is_free(px, py, radius[i], cx, cy, x, y, radius, first, following)
-        if free and _clear_of(walls, px, py, radius[i]):
-            following[i], first[cx, cy] = first[cx, cy], i
-            x[i], y[i] = px, py
-
-
-@njit(cache=True)
-def _is_free(px, py, r, cx, cy, x, y, radius, first, following):
-    for ax in range(cx - 1, cx + 2):
-        for ay in range(cy - 1, cy + 2):
-            j = first[ax, ay]
-            while j >= 0:
-                if (px - x[j]) ** 2 + (py - y[j]) ** 2 <= (r + radius[j]) ** 2:
-                    return False
-                j = following[j]
-    return True
-
-
-@njit(cache=True)
-def _clear_of(walls, px, py, r):
-    for w in range(walls.shape[0]):
-        dx, dy = px - walls[w, 0], py - walls[w, 1]
-        s = min(max(dx * walls[w, 2] + dy * walls[w, 3], 0.0), walls[w, 4])
-        if (dx - s * walls[w, 2]) ** 2 + (dy - s * walls[w, 3]) ** 2 < r * r * (1.0 - 1e-12):
-            return False
-    return True

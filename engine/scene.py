@@ -2,16 +2,15 @@
 
 import math
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from engine.errors import finite, require
+from engine.kernel.scene_arrays import STRAIGHT, along
 
 Point = tuple[float, float]
 Segment = tuple[float, float, float, float]  # x0, y0, x1, y1 in m
-
-STRAIGHT = 1e-9  # of a wall's length, and m: how far beside a line a point may lie and still be on it
 
 
 @dataclass(frozen=True)
@@ -22,7 +21,7 @@ class Exit:
     ----------
     start, end : ends of the line, m; walls begin there
     outward : direction that leads out, at a right angle to the line
-    walk_on : how far beyond the line the departed still walk and push, m
+    walk_on : how far beyond the line those who have left still walk and push, m
     """
 
     start: Point
@@ -87,31 +86,6 @@ class Scene:
         return cls(((0, 0, width, 0), (width, 0, width, height), (width, height, 0, height), (0, height, 0, 0)))
 
 
-class SceneArrays(NamedTuple):
-    """What the kernel sees of a scene."""
-
-    walls: np.ndarray  # (walls, 5): x0, y0, unit vector along, length; m
-    joints: np.ndarray  # (walls, 2, n): walls that its start, its end lies on; -1 none
-    exits: np.ndarray  # (exits, 8): x0, y0, unit vector along, length, outward normal, walk_on; m
-
-
-def as_arrays(scene: Scene) -> SceneArrays:
-    """The scene for the kernel."""
-    walls = np.array([(x0, y0, *_along(x0, y0, x1, y1)) for x0, y0, x1, y1 in scene.walls]).reshape(-1, 5)
-    exits = np.array([_exit_row(e) for e in scene.exits]).reshape(-1, 8)
-    return SceneArrays(walls, _joints(scene.walls), exits)
-
-
-def _along(x0: float, y0: float, x1: float, y1: float) -> tuple[float, float, float]:
-    length = math.hypot(x1 - x0, y1 - y0)
-    return (x1 - x0) / length, (y1 - y0) / length, length
-
-
-def _exit_row(e: Exit) -> tuple[float, ...]:
-    size = math.hypot(*e.outward)
-    return (*e.start, *_along(*e.start, *e.end), e.outward[0] / size, e.outward[1] / size, e.walk_on)
-
-
 def _joined(pieces: list[Segment]) -> list[Segment]:
     """Join pieces that touch or overlap on one line."""
     walls: list[Segment] = []
@@ -129,7 +103,7 @@ def _joined(pieces: list[Segment]) -> list[Segment]:
 def _union(first: Segment, second: Segment) -> Segment | None:
     """The one segment that two collinear, touching segments make; None if they are not such."""
     x0, y0 = first[:2]
-    ux, uy, length = _along(*first)
+    ux, uy, length = along(*first)
     ends = [(x - x0, y - y0) for x, y in (second[:2], second[2:])]
     aside = max(abs(ux * dy - uy * dx) for dx, dy in ends)
     s, e = sorted(ux * dx + uy * dy for dx, dy in ends)
@@ -140,22 +114,9 @@ def _union(first: Segment, second: Segment) -> Segment | None:
     return x0 + s * ux, y0 + s * uy, x0 + e * ux, y0 + e * uy
 
 
-def _joints(walls: tuple[Segment, ...]) -> np.ndarray:
-    """For each end of each wall the other walls that it lies on."""
-    found = [
-        [[k for k, other in enumerate(walls) if k != w and _lies_on(end, other)] for end in (wall[:2], wall[2:])]
-        for w, wall in enumerate(walls)
-    ]
-    most = max((len(others) for wall in found for others in wall), default=0)
-    joints = np.full((len(walls), 2, max(most, 1)), -1, np.int64)
-    for w, wall in enumerate(found):
-        for end, others in enumerate(wall):
-            joints[w, end, : len(others)] = others
-    return joints
-
-
-def _lies_on(point: Point, wall: Segment) -> bool:
-    ux, uy, length = _along(*wall)
-    dx, dy = point[0] - wall[0], point[1] - wall[1]
-    along = min(max(dx * ux + dy * uy, 0.0), length)
-    return math.hypot(dx - along * ux, dy - along * uy) < STRAIGHT
+def from_closest_points(walls: np.ndarray, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """From the closest points of wall segments (..., 4) to positions (...), broadcast, m."""
+    x0, y0, x1, y1 = np.moveaxis(walls, -1, 0)
+    ux, uy = x1 - x0, y1 - y0
+    s = np.clip(((x - x0) * ux + (y - y0) * uy) / np.maximum(ux**2 + uy**2, 1e-300), 0.0, 1.0)
+    return x - x0 - s * ux, y - y0 - s * uy

@@ -1,4 +1,4 @@
-"""Work and precision: what the choices of `engine.accuracy` cost in accuracy and save in time.
+"""Work and precision: what the accuracies of `engine.options` leave of error and save of time.
 
 `make study-accuracy`, or `python -m studies.accuracy [--quick] [--docs] [--jobs N] [--more N]`.
 """
@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from engine.rooms import ROOMS
-from studies.precision import cells, conservation, levels, places, savings
+from studies.precision import cells, conservation, levels, positions, savings
 from studies.precision.clock import compile_all, spread
 from studies.precision.drawing import draw
 from studies.precision.page import Results, page, tables
@@ -23,14 +23,14 @@ FOLDER, DOCS = Path("results/accuracy"), Path("docs")
 
 def measure(plan: Plan, store: Path, jobs: int) -> Results:
     """Run all parts of a plan; whole runs are kept in the store and not run again."""
-    settings = places.product(plan.integrators, plan.steps, plan.tolerances)
+    settings = positions.product(plan.integrators, plan.steps, plan.tolerances)
     _say("compiling the kernels")
     checks = [c for case in plan.cases for c in (case.reference, *case.checks)]
     rooms: dict[str, Any] = {case.room: ROOMS[case.room]() for case in plan.cases}
     kinds = [Setting(s.integrator, 1e-4, 1e-3) for s in (*settings, *checks)]
     spread(compile_all, [(room, kinds) for room in rooms.values()], jobs)
-    _say("places before chaos")
-    found = places.measure(plan.cases, settings, plan.seeds, plan.stretch, jobs)
+    _say("positions before chaos")
+    found = positions.measure(plan.cases, settings, plan.seeds, plan.stretch, jobs)
     _say("energy where it is conserved")
     drifts = conservation.measure(plan.integrators, plan.steps, plan.gas_time, jobs)
     _say("statistics of whole runs")

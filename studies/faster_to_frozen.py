@@ -10,8 +10,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from engine import Model, Numerics, Scenario, models, rooms
-from engine.accuracy import numerics_for
+from engine import Model, Scenario, models, rooms
 from engine.errors import require
 from studies import measures
 from studies.lin.artefact import blocked_words, cells
@@ -24,10 +23,7 @@ from sweep import Grid, sweep
 FOLDER = Path("results/faster_to_frozen")
 N = 200  # persons, as in both papers
 MODELS: dict[str, Callable[[], Model]] = {"lin": models.lin_dem, "parisi": models.parisi_dorso}
-ROOMS: dict[str, tuple[Callable[..., Scenario], Numerics]] = {
-    "lin": (rooms.lin_room, rooms.LIN_2016),
-    "parisi": (rooms.parisi_room, rooms.PARISI_2005),
-}
+ROOMS: dict[str, Callable[..., Scenario]] = {"lin": rooms.lin_room, "parisi": rooms.parisi_room}
 MODEL_NAMES = {"lin": "Lin's model", "parisi": "Parisi's model"}
 ROOM_NAMES = {"lin": "15 m room, 1 m exit", "parisi": "20 m room, 1.2 m exit"}
 HEIGHT = 4.4  # in
@@ -49,10 +45,7 @@ def either_room(model: str, room: str, v_d: float, seed: int = 0) -> Scenario:
     """
     for name, word in (("model", model), ("room", room)):
         require(word in MODELS, name, repr(word), "is not known", f"choose one of {', '.join(MODELS)}")
-    function, paper = ROOMS[room]
-    scenario, laws = function(v_d=v_d, N=N, seed=seed), MODELS[model]()
-    numerics = numerics_for("accurate", "2%", laws, scenario.crowd, paper)
-    return replace(scenario, model=laws, numerics=numerics)
+    return replace(ROOMS[room](v_d=v_d, N=N, seed=seed), model=MODELS[model]())
 
 
 KINDS = {"model": list(MODELS), "room": list(ROOMS)}

@@ -2,7 +2,6 @@
 
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -10,9 +9,10 @@ from joblib import Parallel, delayed
 
 from engine import Run, Scenario, rooms, simulate
 from studies.presentation.verdicts import columns
+from studies.variants.room import variant_room
 
 FOLDER = Path("results/rest")
-READINGS = ("RK", "RS", "W", "W01", "R02", "WK", "WR", "B")
+VARIANTS = ("RK", "RS", "W", "W01", "R02", "WK", "WR", "B")  # of what the friction of Lin's model may be
 SLOW = 20.0  # s, a wait that ended
 HEAD = ("runs", "tested", "blocked", "slow", "frozen early", "agree", "simulated time saved")
 
@@ -32,10 +32,10 @@ class Pair(NamedTuple):
 def scenarios(quick: bool) -> Iterator[tuple[str, Scenario]]:
     """Rooms that block: Lin's at high desired speeds, Parisi & Dorso's with a narrow door."""
     seeds = range(2 if quick else 10)
-    for reading in READINGS[::4] if quick else READINGS:
+    for variant in VARIANTS[::4] if quick else VARIANTS:
         for v_d in (2.0, 2.4):
             for seed in seeds:
-                yield f"Lin, {reading}", rooms.lin_room(v_d=v_d, N=150, seed=seed, reading=reading)
+                yield f"Lin, {variant}", variant_room(variant, v_d, N=150, seed=seed)
     for v_d in (4.0, 6.0, 8.0):
         for seed in seeds if quick else range(20):
             yield "Parisi & Dorso, door of 0.6 m", rooms.parisi_room(v_d=v_d, N=100, seed=seed, L=0.6)
@@ -44,7 +44,7 @@ def scenarios(quick: bool) -> Iterator[tuple[str, Scenario]]:
 def both(kind: str, scenario: Scenario) -> Pair:
     """Run a scenario with and without the early verdict."""
     early = simulate(scenario)
-    full = simulate(replace(scenario, stopping=replace(scenario.stopping, at_rest=False)))
+    full = simulate(scenario, stop_at_rest=False)
     same = early.exit_time.tolist() == full.exit_time.tolist()
     verdict = full.outcome == "blocked" if early.outcome == "frozen" else early.outcome == full.outcome
     return Pair(

@@ -141,6 +141,12 @@ def _described(name: str) -> dict[str, str]:
     return {"units": units, "long_name": long_name} if units else {"long_name": name}
 
 
+def _engine_of(grid: Grid) -> str:
+    """The state of the engine by which a grid is run; rooms of one's own may have laws of their own."""
+    first = next(iter(grid.points()), None)
+    return FINGERPRINT if grid.seeds_alone or first is None else schema.engine_of(grid.scenario(first))
+
+
 def _attributes(grid: Grid, others: Mapping[str, int]) -> dict[str, Any]:
     return {
         "Conventions": schema.CONVENTIONS,
@@ -151,7 +157,7 @@ def _attributes(grid: Grid, others: Mapping[str, int]) -> dict[str, Any]:
         "grid": grid.to_json(),
         "common_random_numbers": np.int8(grid.common_random_numbers),
         "random_numbers": COMMON if grid.common_random_numbers else OWN,
-        "engine_fingerprint": FINGERPRINT,
+        "engine_fingerprint": _engine_of(grid),
         "schema_version": np.int32(schema.SCHEMA_VERSION),
         **({"accepted_engines": json.dumps(others)} if others else {}),
     }

@@ -7,20 +7,20 @@ import itertools
 import json
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from types import MappingProxyType, NoneType
 from typing import Any, get_args, get_type_hints
 
 import numpy as np
 
-from engine import BadInput, Scenario
+from engine import BadInput, Scenario, with_options
 from engine.errors import require
 from engine.rooms import ROOMS
+from sweep.rooms import Room, room_named
 
 Scalar = bool | int | float | str
 Point = dict[str, Scalar]
 Cell = tuple[Scalar, ...]
-Room = Callable[..., Scenario]
 
 SEED, CHOICE, SEEDS = "seed", "common_random_numbers", "seeds_of_cells"
 KINDS = {float: "a number", int: "a whole number", bool: "true or false", str: "a word"}
@@ -31,7 +31,8 @@ class Grid:
 
     Parameters
     ----------
-    room : a function of named parameters -> Scenario, or its name in `engine.rooms.ROOMS`
+    room : a function of named parameters -> Scenario, or its name (see `sweep.rooms.room_named`); each has the options
+        of runs (`engine.Options`) as keywords besides its own
     common_random_numbers : whether runs of one seed begin with the same random numbers, whatever the values of the
         other axes; if not, every cell draws its own, from the seed and from the parameters that differ from the
         room's defaults, so that a grid that is extended keeps its runs
@@ -52,13 +53,12 @@ class Grid:
     """
 
     def __init__(self, room: Room | str, /, *, common_random_numbers: Any = True, **keywords: Any) -> None:
-        self._describe(_room(room), common_random_numbers, keywords)
+        self._describe(_room(room), _name(room), common_random_numbers, keywords)
         for point in self._telling():
             self.scenario(point)
 
-    def _describe(self, room: Room, common_random_numbers: Any, keywords: Mapping[str, Any]) -> None:
-        self.room = room
-        self.name = _name(self.room)
+    def _describe(self, room: Room, name: str, common_random_numbers: Any, keywords: Mapping[str, Any]) -> None:
+        self.room, self.name = room, name
         self._known = inspect.signature(room).parameters
         _check_names(self.name, self.room, keywords)
         kinds = {name: plain_kind(hint) for name, hint in get_type_hints(self.room).items()}
@@ -71,9 +71,11 @@ class Grid:
 
     def over(self, **axes: Any) -> "Grid":
         """The same grid with other values of some axes."""
-        return Grid(
-            self.room, common_random_numbers=self.common_random_numbers, **{**self.axes, **axes, **self.constants}
-        )
+        other = Grid.__new__(Grid)
+        other._describe(self.room, self.name, self.common_random_numbers, {**self.axes, **axes, **self.constants})
+        for point in other._telling():
+            other.scenario(point)
+        return other
 
     def first_seeds(self, numbers: Mapping[Cell, int]) -> "Grid":
         """The same grid, of which each cell has only the first so many seeds; those not named have none."""
@@ -165,7 +167,10 @@ class Grid:
         """The grid that `to_json` wrote, if its room is one of `engine.rooms.ROOMS`; its points are not tried again."""
         plain = json.loads(text)
         grid = Grid.__new__(Grid)
-        grid._describe(_room(plain["room"]), plain.get(CHOICE, True), {**plain["axes"], **plain["constants"]})
+        known = plain["room"] in ROOMS  # data must not name code to run
+        require(known, "room", repr(plain["room"]), "is not known", "it is a user's own: gather it where it was swept")
+        keywords = {**plain["axes"], **plain["constants"]}
+        grid._describe(_room(plain["room"]), plain["room"], plain.get(CHOICE, True), keywords)
         return grid.first_seeds({tuple(cell): number for *cell, number in plain[SEEDS]}) if SEEDS in plain else grid
 
     def _own_seed(self, parameters: Point) -> Point:
@@ -206,14 +211,14 @@ def _choice(common: Any, grid: Grid) -> bool:
 
 def _room(room: Room | str) -> Room:
     if isinstance(room, str):
-        remedy = f"choose one of {', '.join(ROOMS)}, or give Grid the function itself"
-        require(room in ROOMS, "room", repr(room), "is not known", remedy)
-        return ROOMS[room]
+        return room_named(room)
     require(inspect.isfunction(room), "room", repr(room), "is not a function", "give one that returns a Scenario")
-    return room
+    return with_options(room)
 
 
-def _name(room: Room) -> str:
+def _name(room: Room | str) -> str:
+    if isinstance(room, str):
+        return room
     own = f"{room.__module__}:{room.__qualname__}"
     return next((name for name, function in ROOMS.items() if function is room), own)
 

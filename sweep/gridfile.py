@@ -1,6 +1,6 @@
 """A grid described in a TOML file.
 
-room = "lin_room"
+room = "lin_room"             # or "my_rooms.py:my_room"
 store = "results/mine"
 on_code_change = "rerun"      # may be left out
 common_random_numbers = true  # the same
@@ -34,8 +34,8 @@ import numpy as np
 
 from engine import BadInput
 from engine.errors import require
-from engine.rooms import ROOMS
 from sweep.grid import CHOICE, Grid
+from sweep.rooms import room_named
 from sweep.running.backends import BACKENDS
 from sweep.running.limits import limits_of
 from sweep.storage.serving import ON_CODE_CHANGE, RERUN
@@ -138,7 +138,7 @@ def _grid(file: TomlFile, axes: Mapping[str, Any], constants: Mapping[str, Any])
     """The grid of a file; what is wrong is said of the entry that it goes with."""
     room = file.entries["room"]
     with file.blamed("room"):
-        require(room in ROOMS, "room", repr(room), "is not known", f"choose one of {', '.join(ROOMS)}")
+        room_named(room)
     given: dict[Key, Any] = {("axes", name): value for name, value in axes.items()}
     given |= {("constants", name): value for name, value in constants.items()}
     if CHOICE in file.entries:

@@ -12,9 +12,9 @@ import numpy as np
 
 from engine import FINGERPRINT, OUTCOMES, Run, Scenario
 
-SCHEMA_VERSION = 3
+SCHEMA_VERSION = 4
 CONVENTIONS = "CF-1.11"
-MM = 1e-3  # m, to which places alone are stored; a moving person is seen to 1 % of its width
+MM = 1e-3  # m, to which positions alone are stored; a moving person is seen to 1 % of its width
 NOTHING = np.int32(-(2**31))  # in packed values
 MISSING = OUTCOMES.index("missing")
 FLAGS = {"flag_values": np.arange(len(OUTCOMES), dtype=np.int8), "flag_meanings": " ".join(OUTCOMES)}
@@ -72,9 +72,31 @@ VARIABLES = (
     Variable("max_speed", RUN, "f8", "m s-1", "largest speed of anybody", "max_speed", np.nan),
     Variable("steps", RUN, "i8", "1", "number of time steps", "steps", 0),
     Variable("rebuilds", RUN, "i8", "1", "number of times the neighbour lists were made", "rebuilds", 0),
-    Variable("cuts", RUN, "i8", "1", "number of time steps that were cut into parts", "cuts", 0),
-    Variable("culprit", RUN, "i4", "1", "person pressed or thrown through others, -1 for nobody", "culprit"),
-    Variable("partner", RUN, "i4", "1", "the person it was pressed through, -1 for nobody", "partner"),
+    Variable(
+        "substepped_steps",
+        RUN,
+        "i8",
+        "1",
+        "number of time steps that were cut into substeps",
+        "substepped_steps",
+        0,
+    ),
+    Variable(
+        "unstable_person",
+        RUN,
+        "i4",
+        "1",
+        "person pressed or thrown through others, -1 for nobody",
+        "unstable_person",
+    ),
+    Variable(
+        "unstable_partner",
+        RUN,
+        "i4",
+        "1",
+        "the person it was pressed through, -1 for nobody",
+        "unstable_partner",
+    ),
     Variable("radius", PERSON, "f8", "m", "radius", "start.radius"),
     Variable("mass", PERSON, "f8", "kg", "mass", "start.mass"),
     Variable("v_d_person", PERSON, "f8", "m s-1", "desired speed", "start.v_d"),
@@ -94,7 +116,16 @@ VARIABLES = (
     Variable("row_size", ("sample",), "i4", "1", "number of contacts", "samples.row_size", counts="contact"),
     Variable("contact_i", CONTACT, "i4", "1", "person in touch", "samples.contact_i"),
     Variable("contact_j", CONTACT, "i4", "1", "person it touches, or wall w as -1 - w", "samples.contact_j"),
-    Variable("contact_slip", CONTACT, "f4", "m", "length of the tangential spring", "samples.contact_slip"),
+    Variable(
+        "tangential_displacement",
+        CONTACT,
+        "f4",
+        "m",
+        "displacement of the tangential spring",
+        "samples.tangential_displacement",
+    ),
+    Variable("contact_F_n", CONTACT, "f4", "N", "normal force on contact_i", "samples.contact_F_n"),
+    Variable("contact_F_t", CONTACT, "f4", "N", "tangential force on contact_i", "samples.contact_F_t"),
 )
 BY_NAME = {variable.name: variable for variable in VARIABLES}
 GATHERED = tuple(variable for variable in VARIABLES if variable.pad is not None)
@@ -113,7 +144,11 @@ PARAMETERS = {  # keywords of rooms: units and long_name of a coordinate
     "g_t": ("m-1 s-1", "tangential damping"),
     "mu": ("1", "friction coefficient"),
     "tau": ("s", "reaction time"),
-    "reading": ("1", "reading of what the paper leaves open"),
+    "friction": ("1", "friction between persons: reset, kept, kinetic, coulomb or none"),
+    "wall_friction": ("1", "friction at walls: reset, kept, kinetic, coulomb or none"),
+    "wall_mu": ("1", "friction coefficient at walls"),
+    "wall_social": ("1", "whether walls exert the social force"),
+    "wall_A": ("N", "strength of the social force of walls"),
     "inertia": ("1", "moment of inertia: sphere, disc or none"),
     "numerics": ("1", "accurate or paper"),
     "g": ("kg s-1", "normal damping of contacts"),
@@ -122,21 +157,29 @@ PARAMETERS = {  # keywords of rooms: units and long_name of a coordinate
     "k_n": ("N m-1", "stiffness of contacts"),
     "kappa": ("kg m-1 s-1", "sliding friction"),
     "mass": ("kg", "mass of everybody"),
-    "contacts": ("1", "also record who touches whom"),
+    "contacts": ("1", "also record who is in contact, and with what force"),
     "size": ("m", "side of the room"),
     "dt": ("s", "time step"),
     "force_tolerance": ("N", "social force that is neglected"),
-    "patience": ("s", "time without anybody leaving after which exits count as blocked"),
+    "skin": ("m", "how much farther than they interact pairs are listed, 0: adapted"),
+    "stop_at_rest": ("1", "end a run as soon as it is certain that nobody will get out in time"),
+    "blocked_after": ("s", "time without anybody leaving after which exits count as blocked"),
     "time_limit": ("s", "time at which a run is ended"),
-    "every": ("s", "sampling interval"),
-    "state": ("1", "what of each person is recorded: whole or places"),
+    "record_every": ("s", "sampling interval"),
+    "record": ("1", "what is recorded: full or positions"),
 }
 RANK = {"units": "1", "long_name": "rank in the order of leaving"}
 
 
 def run_key(scenario: Scenario) -> str:
     """What a run is found by: hash of its exact description, the schema and the engine (64 hex digits)."""
-    return key_of(scenario.canonical())
+    return key_of(scenario.canonical(), engine=engine_of(scenario))
+
+
+def engine_of(scenario: Scenario) -> str:
+    """The state of the engine that a scenario is run by: its fingerprint, and that of laws of one's own."""
+    laws = scenario.law_fingerprint
+    return f"{FINGERPRINT}-{laws}" if laws else FINGERPRINT
 
 
 def key_of(canonical: str, schema: int | None = None, engine: str = "") -> str:
@@ -150,7 +193,7 @@ def scenario_hash(canonical: str) -> str:
     return hashlib.sha256(canonical.encode()).hexdigest()
 
 
-WHOLE_STATE = {"vx", "vy", "spin", "contact_slip"}  # not recorded with places alone
+FULL_STATE = {"vx", "vy", "spin", "tangential_displacement", "contact_F_n", "contact_F_t"}  # not with positions alone
 
 
 def recorded(run: Run) -> tuple[Variable, ...]:
@@ -158,12 +201,12 @@ def recorded(run: Run) -> tuple[Variable, ...]:
     absent: set[str] = set()
     if run.samples is None:
         absent |= {"sample", "contact"}
-    elif not run.scenario.record.contacts:
+    elif not run.scenario.options.contacts:
         absent |= {"contact"}
     have = (v for v in VARIABLES if not absent.intersection((*v.dims, v.counts)))
-    if run.scenario.record.state == "whole":
+    if run.scenario.options.record == "full":
         return tuple(have)
-    return tuple(_rounded(v) if v.name in ("x", "y") else v for v in have if v.name not in WHOLE_STATE)
+    return tuple(_rounded(v) if v.name in ("x", "y") else v for v in have if v.name not in FULL_STATE)
 
 
 def named(name: str, packed: bool = False) -> Variable:
@@ -177,9 +220,9 @@ def named(name: str, packed: bool = False) -> Variable:
     return _rounded(BY_NAME[name]) if packed else BY_NAME[name]
 
 
-def _rounded(place: Variable) -> Variable:
-    """A place that is stored to 1 mm."""
-    return place._replace(dtype="f8", resolution=MM)
+def _rounded(position: Variable) -> Variable:
+    """A position that is stored to 1 mm."""
+    return position._replace(dtype="f8", resolution=MM)
 
 
 def fact(run: Run, variable: Variable) -> np.ndarray:
@@ -213,7 +256,7 @@ def run_attributes(run: Run) -> dict[str, Any]:
         "scenario": run.scenario.to_json(),
         "run_key": run_key(run.scenario),
         "schema_version": np.int32(SCHEMA_VERSION),
-        "engine_fingerprint": FINGERPRINT,
+        "engine_fingerprint": engine_of(run.scenario),
         "numba_version": numba.__version__,
         "numpy_version": np.__version__,
         "python_version": platform.python_version(),

@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import cKDTree
 
-from engine import Numerics, models
+from engine import laws, models
+from engine.rooms import LIN_2016
 
 SIZES = (100, 200, 1000, 10_000, 100_000)
 DENSITY = 2.8  # persons/m^2; then 2.2 contacts a person and lists for 70 steps, as in Lin's room at 1.6 to 2 m/s
@@ -65,49 +66,48 @@ class Packing:
 
 
 def jam(N: int, seed: int = 0) -> Packing:
-    """N persons at `DENSITY`, pushed out of their overlaps from random places until they barely touch."""
+    """N persons at `DENSITY`, pushed out of their overlaps from random positions until they barely touch."""
     rng = np.random.default_rng(seed)
     width = N / (DENSITY * DEPTH)
     size = rng.permutation(np.arange(N) % len(RADII))
     radius = np.array(RADII)[size]
-    places = rng.uniform(radius, np.array([[DEPTH], [width]]) - radius)
-    places = _relaxed(places, radius, np.array([[DEPTH], [width]]))
+    positions = rng.uniform(radius, np.array([[DEPTH], [width]]) - radius)
+    positions = _relaxed(positions, radius, np.array([[DEPTH], [width]]))
     angle = rng.uniform(0.0, 2.0 * math.pi, N)
-    return Packing(DEPTH, width, places[0], places[1], JOSTLE * np.cos(angle), JOSTLE * np.sin(angle), size)
+    return Packing(DEPTH, width, positions[0], positions[1], JOSTLE * np.cos(angle), JOSTLE * np.sin(angle), size)
 
 
-def _relaxed(places: np.ndarray, radius: np.ndarray, far: np.ndarray) -> np.ndarray:
-    """Places (2, N) after rounds in which discs and walls push overlaps apart."""
-    last = np.zeros_like(places)
+def _relaxed(positions: np.ndarray, radius: np.ndarray, far: np.ndarray) -> np.ndarray:
+    """Positions (2, N) after rounds in which discs and walls push overlaps apart."""
+    last = np.zeros_like(positions)
     for round_ in range(ROUNDS):
         if round_ % LISTED_FOR == 0:
-            i, j = pairs(places, radius, MARGIN)
-        last = MOMENTUM * last + PUSH * _overlaps(places, radius, i, j, far)
-        places = np.clip(places + np.clip(last, -0.02, 0.02), radius / 2, far - radius / 2)
-    return places
+            i, j = pairs(positions, radius, MARGIN)
+        last = MOMENTUM * last + PUSH * _overlaps(positions, radius, i, j, far)
+        positions = np.clip(positions + np.clip(last, -0.02, 0.02), radius / 2, far - radius / 2)
+    return positions
 
 
-def _overlaps(places: np.ndarray, radius: np.ndarray, i: np.ndarray, j: np.ndarray, far: np.ndarray) -> np.ndarray:
+def _overlaps(positions: np.ndarray, radius: np.ndarray, i: np.ndarray, j: np.ndarray, far: np.ndarray) -> np.ndarray:
     """Overlap vectors (2, N) that push each disc out of the others and of the walls, m."""
-    way = places[:, i] - places[:, j]
+    way = positions[:, i] - positions[:, j]
     distance = np.maximum(np.hypot(*way), 1e-9)
     push = way / distance * np.maximum(radius[i] + radius[j] - distance, 0.0)
     on_each = [np.bincount(i, row, radius.size) - np.bincount(j, row, radius.size) for row in push]
-    return np.array(on_each) + np.maximum(radius - places, 0.0) - np.maximum(places + radius - far, 0.0)
+    return np.array(on_each) + np.maximum(radius - positions, 0.0) - np.maximum(positions + radius - far, 0.0)
 
 
-def pairs(places: np.ndarray, radius: np.ndarray, gap: float) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs of discs with a gap below `gap`, each once; `places` (2, N) m."""
-    found = cKDTree(places.T).query_pairs(2.0 * float(radius.max()) + gap, output_type="ndarray").T
+def pairs(positions: np.ndarray, radius: np.ndarray, gap: float) -> tuple[np.ndarray, np.ndarray]:
+    """Pairs of discs with a gap below `gap`, each once; `positions` (2, N) m."""
+    found = cKDTree(positions.T).query_pairs(2.0 * float(radius.max()) + gap, output_type="ndarray").T
     i, j = found
-    close = np.hypot(*(places[:, i] - places[:, j])) < radius[i] + radius[j] + gap
+    close = np.hypot(*(positions[:, i] - positions[:, j])) < radius[i] + radius[j] + gap
     return i[close], j[close]
 
 
 def reach() -> float:
-    """Gap at which Lin's social force has fallen to the engine's default tolerance, m."""
-    law = models.lin_dem().social
-    return law.B * math.log(law.A / Numerics().force_tolerance)
+    """Gap at which Lin's social force ends by the paper's numerics, m."""
+    return laws.cutoff(models.lin_dem().social, LIN_2016.force_tolerance)
 
 
 def pairs_in_reach(packing: Packing) -> int:

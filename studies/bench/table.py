@@ -108,10 +108,10 @@ def notes(found: list[Found]) -> list[str]:
         f"everybody pressing towards one long side at v_d = {V_D:g} m/s; equal arrays for every code.",
         "Medians of process CPU time, one thread, codes taking turns. Compilation, set-up and the first steps are "
         "not in it (jamsweep: two runs of different length, subtracted).",
-        "Pairs in reach: gap below the one where Lin's social force has fallen to the default tolerance, counted "
+        "Pairs in reach: gap below the one where Lin's social force ends by the paper's numerics, counted "
         "once at the start; the same count divides every code's time, whatever its own reach is.",
         "Person-seconds per CPU second use each code's own usual step, whether or not it is stable with it.",
-        "LAMMPS has the same contact law, social force, drive and walls, but no vision and no social walls; "
+        "LAMMPS has the same contact law, social force, drive and walls, but no anisotropy and no social walls; "
         "jamsweep_as_lammps is this engine with just these laws.",
         "JuPedSim and PySocialForce compute their own models; everybody is steered straight ahead.",
     ]

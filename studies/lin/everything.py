@@ -16,11 +16,11 @@ PAGE = Path("docs/lin.md")
 PICTURES = {"fig7": "lin_fig7.png", "hazard": "lin_hazard.png"}  # of the page
 INTRODUCTION = f"""# Lin, Ma & Lo (2016), reproduced
 
-Written by `make study-lin DOCS=1` with the default reading of what the paper leaves open (`models.lin_dem`): {SEEDS}
+Written by `make study-lin DOCS=1` with the default variant of what the paper leaves open (`models.lin_dem`): {SEEDS}
 runs at each desired speed and crowd size for Figures 7 to 10, which share them, {STRENGTH_SEEDS} at each strength of
 the social force for Figure 4, {ROTATION_SEEDS} pairs with and without rotation for Figure 5. Intervals are of 95 %; a
 mean is over the runs that got out, and how many did not is said. The figures of the paper were not digitised: published
-numbers are those of its text. The default reading was chosen by its agreement with them, so that agreement shows what
+numbers are those of its text. The default variant was chosen by its agreement with them, so that agreement shows what
 the model can give, and not that its authors' code had these laws.
 
 Tolerances: 20 % of a clearance time, 10 % of a flow, of what is called the same, and of what changes barely. A range of

@@ -32,7 +32,7 @@ def measure(sweeps: Sweeps) -> xr.Dataset:
 
 
 def plot(found: xr.Dataset) -> Figure:
-    """Mean leaving curves with intervals, and the published times; the two readings of walls below each other."""
+    """Mean leaving curves with intervals, and the published times; the two variants of walls below each other."""
     figure, axes = figures.stacked(2, height=artefact.HEIGHT)
     for axis, walls in zip(axes, WALLS, strict=True):
         _curves(axis, found.sel(walls=walls))
@@ -58,7 +58,7 @@ def _curves(axis: Axes, column: xr.Dataset) -> None:
 
 
 def verdicts(found: xr.Dataset) -> list[Verdict]:
-    """Clearance times and what a stronger force changes, for both readings of what walls do."""
+    """Clearance times and what a stronger force changes, for both variants of what walls do."""
     return [verdict for walls in WALLS for verdict in _of(found.sel(walls=walls), walls)]
 
 

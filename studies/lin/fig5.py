@@ -1,4 +1,4 @@
-"""Figure 5 of Lin, Ma & Lo (2016): leaving of 100 persons who turn or do not, at 1 and 2 m/s."""
+"""Figure 5 of Lin, Ma & Lo (2016): leaving of 100 persons who rotate or do not, at 1 and 2 m/s."""
 
 import sys
 
@@ -8,15 +8,15 @@ from matplotlib.figure import Figure
 
 from studies import measures
 from studies.lin import artefact
-from studies.lin.sweeps import TURNING, Sweeps
+from studies.lin.sweeps import ROTATION, Sweeps
 from studies.presentation import figures
 from studies.presentation.estimates import said
 from studies.presentation.verdicts import Verdict, interval
 from studies.published import lin2016 as paper
 
-ON, OFF = TURNING
+ON, OFF = ROTATION
 SAME = 0.1  # of the clearance time: what "basically the same" is taken to allow
-STYLES = {ON: (figures.BLUE, "-", "turning"), OFF: (figures.ORANGE, "--", "not turning")}
+STYLES = {ON: (figures.BLUE, "-", "with rotation"), OFF: (figures.ORANGE, "--", "without rotation")}
 LEVEL = 0.05  # of the test
 
 
@@ -26,7 +26,7 @@ def measure(sweeps: Sweeps) -> xr.Dataset:
     found = artefact.cells(ds)
     time = found.time_of_run.where(np.isfinite(found.time_of_run))
     longer = (time.sel(inertia=OFF, drop=True) / time.sel(inertia=ON, drop=True)).rename("longer")
-    longer.attrs = {"units": "1", "long_name": "clearance time without turning over that with it"}
+    longer.attrs = {"units": "1", "long_name": "clearance time without rotation over that with it"}
     ratios = measures.mean_over(longer).rename(runs="pairs_out").drop_vars("censored")
     paired = measures.paired_blocking(ds, "inertia", OFF, ON)
     return found.assign(ratios.data_vars).assign(paired.data_vars).assign(artefact.runs_of(ds).data_vars)

@@ -31,7 +31,7 @@ def measure(sweeps: Sweeps) -> xr.Dataset:
 
 
 def judged(ds: xr.Dataset) -> xr.Dataset:
-    """The same of any gathered dataset with the axes v_d, N and seed: any reading, any room."""
+    """The same of any gathered dataset with the axes v_d, N and seed: any variant, any room."""
     counts = measures.chances(ds)
     runs = run_counts(ds, "seed")
     laws = {name: _fitted(counts, sizes, powers) for name, (sizes, powers) in TRAINED.items()}

@@ -1,6 +1,5 @@
 """The runs of all figures: one grid over v_d and N for Figures 7 to 10, and those of Figures 4, 5 and 6."""
 
-from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 
@@ -18,7 +17,7 @@ QUICK_V_D, QUICK_SEEDS = [0.6, 1.0, 1.4, 1.8], 2
 STRENGTH_SEEDS = 20
 ROTATION_SEEDS = 40  # for a half-width of 0.15 of a share
 WALLS = ("as persons", "held")  # how strongly walls push when A is varied
-TURNING = ("sphere", "none")  # `inertia`: rotation on and off
+ROTATION = ("sphere", "none")  # `inertia`: rotation on and off
 
 
 def strength_room(A: float = 300.0, walls: str = WALLS[0], seed: int = 0) -> Scenario:
@@ -30,11 +29,7 @@ def strength_room(A: float = 300.0, walls: str = WALLS[0], seed: int = 0) -> Sce
         If `walls` is neither "as persons" nor "held", or A out of its range.
     """
     require(walls in WALLS, "walls", repr(walls), "is not known", f"choose one of {', '.join(WALLS)}")
-    scenario = rooms.lin_room(paper.FIG4_V_D, paper.FIG4_N, seed, A=A)
-    if walls == "as persons":
-        return scenario
-    held = rooms.lin_room().model.wall_social
-    return replace(scenario, model=scenario.model._replace(wall_social=held))
+    return rooms.lin_room(paper.FIG4_V_D, paper.FIG4_N, seed, A=A, wall_A=None if walls == "as persons" else 300.0)
 
 
 def grids(quick: bool) -> dict[str, Grid]:
@@ -44,11 +39,11 @@ def grids(quick: bool) -> dict[str, Grid]:
         return range(QUICK_SEEDS if quick else full)
 
     v_d = [paper.FIG5_V_D_SAME, paper.FIG5_V_D_CLOGS_MORE_WITHOUT_ROTATION]
-    sampled = {"every": paper.FIG6_TIMES[1], "contacts": True}
+    sampled = {"record_every": paper.FIG6_TIMES[1], "contacts": True}
     return {
         "speeds": Grid(rooms.lin_room, v_d=QUICK_V_D if quick else V_D, N=[100, 200, 300], seed=seeds(SEEDS)),
         "strengths": Grid(strength_room, A=list(paper.FIG4_A), walls=WALLS, seed=seeds(STRENGTH_SEEDS)),
-        "rotation": Grid(rooms.lin_room, v_d=v_d, inertia=TURNING, seed=seeds(ROTATION_SEEDS), N=paper.FIG5_N),
+        "rotation": Grid(rooms.lin_room, v_d=v_d, inertia=ROTATION, seed=seeds(ROTATION_SEEDS), N=paper.FIG5_N),
         "snapshots": Grid(rooms.lin_room, seed=[0], N=paper.FIG6_N, v_d=1.0, **sampled),
     }
 

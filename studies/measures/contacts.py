@@ -90,7 +90,7 @@ def check_dims(run: xr.Dataset, dims: Dims) -> None:
     if absent:
         raise ValueError(
             f"run has no variable {', '.join(absent)}: contact measures need its walls, doors, exits and recorded"
-            " contacts, so record with every=0.02, contacts=True and pass what sweep.read_run gives"
+            " contacts, so record with record_every=0.02, contacts=True and pass what sweep.read_run gives"
         )
     for name, wanted in dims.items():
         have = run[name].dims

@@ -48,8 +48,8 @@ def clearance(ds: xr.Dataset) -> xr.Dataset:
 
     Returns
     -------
-    Dataset with `clearance_time` (axes...) s: t_N where all got out, inf where blocked or frozen (the reading
-    of Lin, Ma & Lo 2016, Fig. 7), NaN where the time limit came first, the run was unstable or is missing;
+    Dataset with `clearance_time` (axes...) s: t_N where all got out, inf where blocked or frozen (as in Lin,
+    Ma & Lo 2016, Fig. 7), NaN where the time limit came first, the run was unstable or is missing;
     and `censored`, `censoring_time`.
 
     Raises

@@ -31,7 +31,7 @@ plt.rcParams.update(figures.STYLE | {"figure.dpi": 150})
 # (The first run of a model compiles it, which takes some 20 s.)
 
 # %%
-run = simulate(rooms.lin_room(v_d=1.6, N=80, seed=1, every=0.1, contacts=True))
+run = simulate(rooms.lin_room(v_d=1.6, N=80, seed=1, record_every=0.1, contacts=True))
 write_run(run, FOLDER / "run.nc")
 print(run)
 

@@ -69,7 +69,7 @@ sys.path.insert(0, str(FOLDER))
 # %%
 import matplotlib.pyplot as plt
 
-from engine import Crowd, Exit, Numerics, Scenario, Scene, Stopping, models, simulate
+from engine import Crowd, Exit, Options, Scenario, Scene, models, simulate
 from studies import measures
 from studies.presentation import figures
 from sweep import Grid, open_results, sweep
@@ -104,8 +104,7 @@ def my_room(v_d: float = 1.2, seed: int = 0, door: float = 4.0, law: str = "expo
         scene=Scene(walls, (Exit((8.0, low), (8.0, high), outward=(1.0, 0.0)),)),
         crowd=Crowd.uniform(N, (0.0, 8.0, 0.0, 8.0), radius=(0.25, 0.35), mass=(60.0, 80.0), v_d=v_d),
         model=models.lin_dem()._replace(social=LAWS[law]),
-        numerics=Numerics(dt=1e-3, force_tolerance=0.1),
-        stopping=Stopping(patience=60.0),
+        options=Options(dt=1e-3, force_tolerance=0.1, integrator="velocity_verlet", blocked_after=60.0),
         seed=seed,
     )
 

@@ -36,9 +36,9 @@ def make_one(name: str, sweeps: Sweeps) -> list[Verdict]:
     return artefact.make(import_module(f"studies.parisi.{name}"), sweeps)
 
 
-def page(found: dict[str, list[Verdict]], readings: str) -> str:
+def page(found: dict[str, list[Verdict]], variants: str) -> str:
     """The page of the documents."""
-    return f"{INTRODUCTION}{readings}\n\n{sections(found)}"
+    return f"{INTRODUCTION}{variants}\n\n{sections(found)}"
 
 
 def main(quick: bool = False, jobs: int = 2) -> None:
@@ -52,5 +52,5 @@ def main(quick: bool = False, jobs: int = 2) -> None:
     print(text + (artefact.THINNED if quick else ""))
     print(f"\n{len(found)} pictures in {sweeps.folder} after {time.monotonic() - begin:.0f} s")
     if os.environ.get("DOCS") and not quick:
-        PAGE.write_text(page(found, table1.readings_table(table1.measure(sweeps))), "utf-8")
+        PAGE.write_text(page(found, table1.variants_table(table1.measure(sweeps))), "utf-8")
         print(PAGE)

@@ -7,7 +7,7 @@ import pandas as pd
 import xarray as xr
 from joblib import Parallel, delayed, parallel_config
 
-from engine import Scenario, cache, rooms
+from engine import Scenario, fingerprint, rooms
 from engine.errors import require
 from studies import measures, swept
 from studies.published import parisi2005 as paper
@@ -26,7 +26,9 @@ def wide_room(L: float, seed: int = 0) -> Scenario:
     """Parisi's room at 4 m/s with as many persons as the paper has for a door of width L (Sec. 3)."""
     known = ", ".join(f"{width:g}" for width in paper.DOORS_N)
     require(L in paper.DOORS_N, "L", f"{L} m", "is no door of the paper", f"choose one of {known} m")
-    return rooms.parisi_room(paper.DOORS_V_D, paper.DOORS_N[L], seed, L, every=EVERY, contacts=True, state="places")
+    return rooms.parisi_room(
+        paper.DOORS_V_D, paper.DOORS_N[L], seed, L, record_every=EVERY, contacts=True, record="positions"
+    )
 
 
 def grids(quick: bool) -> dict[str, Grid]:
@@ -34,11 +36,11 @@ def grids(quick: bool) -> dict[str, Grid]:
     seeds = range(QUICK_SEEDS if quick else paper.RUNS)
     v_d = QUICK_V_D if quick else list(paper.V_D)
     listed = [v for v in v_d if v in paper.EVACUATION_TIME]
-    recorded = {"every": EVERY, "contacts": True, "state": "places"}
+    recorded = {"record_every": EVERY, "contacts": True, "record": "positions"}
     return {
         "speeds": Grid(rooms.parisi_room, v_d=v_d, seed=seeds, **recorded),
         "doors": Grid(wide_room, L=QUICK_L if quick else list(paper.DOORS_N), seed=seeds),
-        "printed": Grid(rooms.parisi_room, v_d=listed, seed=seeds, reading="printed"),
+        "printed": Grid(rooms.parisi_room, v_d=listed, seed=seeds, A=1000.0),
     }
 
 
@@ -93,7 +95,7 @@ def counted(ds: xr.Dataset, runs: Swept, jobs: int, path: Path) -> xr.Dataset:
     missing = int(measures.outcome_is(ds, "missing").sum())
     if missing:
         raise SweepStopped(f"{missing} runs of {runs.folder} are missing: see {runs.folder}/failed, then run again")
-    made_of = f"{ds.attrs['content']} {cache.fingerprint(Path(measures.__file__).parent)}"
+    made_of = f"{ds.attrs['content']} {fingerprint.fingerprint(Path(measures.__file__).parent)}"
     if path.is_file():
         with xr.open_dataset(path) as kept:
             if kept.attrs.get("content") == made_of:

@@ -15,15 +15,15 @@ from studies.presentation.verdicts import Verdict
 from studies.published import parisi2005 as paper
 
 EACH, MEAN = 0.08, 0.04  # deviation tolerated at each v_d, and on average
-READINGS = ("default", "printed")
+VARIANTS = ("default", "printed")
 LABELS = {"default": "$A$ = 2000 N (default)", "printed": "$A$ = 1000 N (as printed)"}
 
 
 def measure(sweeps: Sweeps) -> xr.Dataset:
-    """Mean evacuation times over v_d and reading, their published values, t_eg, and the deviations."""
+    """Mean evacuation times over v_d and variant, their published values, t_eg, and the deviations."""
     v_d = [v for v in paper.EVACUATION_TIME if v in sweeps.speeds.v_d]
     columns = [_times(ds.sel(v_d=v_d)) for ds in (sweeps.speeds, sweeps.printed)]
-    found = xr.concat([c.reset_coords(drop=True) for c in columns], "reading").assign_coords(reading=list(READINGS))
+    found = xr.concat([c.reset_coords(drop=True) for c in columns], "variant").assign_coords(variant=list(VARIANTS))
     published = xr.DataArray([paper.EVACUATION_TIME[v] for v in v_d], dims="v_d", attrs={"units": "s"})
     ratio = xr.DataArray([paper.RATIO[v] for v in v_d], dims="v_d", attrs={"units": "1"})
     free = paper.N * paper.SHOULDERS / found.v_d
@@ -41,14 +41,14 @@ def _times(ds: xr.Dataset) -> xr.Dataset:
 
 
 def plot(found: xr.Dataset) -> Figure:
-    """Times left, their ratio to the geometric time right, for both readings and as published."""
+    """Times left, their ratio to the geometric time right, for both variants and as published."""
     figure, axes = plt.subplots(1, 2, figsize=(figures.PAGE, artefact.HEIGHT))
     for axis, name, published, words in (
         (axes[0], "clearance_time", found.published, "evacuation time $t_e$ / s"),
         (axes[1], "ratio", found.published_ratio, "$t_e / t_{eg}$"),
     ):
-        for k, reading in enumerate(READINGS):
-            artefact.points(axis, found.sel(reading=reading), name, k, f"{LABELS[reading]}, 95 %")
+        for k, variant in enumerate(VARIANTS):
+            artefact.points(axis, found.sel(variant=variant), name, k, f"{LABELS[variant]}, 95 %")
         axis.plot(found.v_d, published, "x", color="black", ms=5, zorder=5, label="published (Table 1)")
         axis.set(xlabel=artefact.V_D, ylabel=words, ylim=(0, None))
     axes[1].legend(loc="lower right")
@@ -57,7 +57,7 @@ def plot(found: xr.Dataset) -> Figure:
 
 def verdicts(found: xr.Dataset) -> list[Verdict]:
     """Each time, their mean deviation, and the ratios."""
-    here, printed = (found.sel(reading=reading) for reading in READINGS)
+    here, printed = (found.sel(variant=variant) for variant in VARIANTS)
     return [
         *(_time(here.sel(v_d=v_d)) for v_d in found.v_d.values),
         _mean(here, "t_e on average, A = 2000 N"),
@@ -85,12 +85,12 @@ def _mean(column: xr.Dataset, statement: str) -> Verdict:
     return Verdict(statement, f"within {100 * MEAN:.0f} %", text, bool(off.mean() <= MEAN))
 
 
-def readings_table(found: xr.Dataset) -> str:
+def variants_table(found: xr.Dataset) -> str:
     """What A does to Table 1, as Markdown."""
     head = "| v_d (m/s) | published t_e (s) | A = 2000 N | | A = 1000 N | |\n|---|---|---|---|---|---|\n"
     rows = []
     for v_d in found.v_d.values:
-        cells = [found.sel(v_d=v_d, reading=reading) for reading in READINGS]
+        cells = [found.sel(v_d=v_d, variant=variant) for variant in VARIANTS]
         texts = [f"{artefact.said(c, 'clearance_time', 1)} | {100 * float(c.deviation):+.1f} %" for c in cells]
         rows.append(f"| {v_d:g} | {float(cells[0].published):g} | {' | '.join(texts)} |")
     return head + "\n".join(rows)

@@ -68,7 +68,7 @@ def around_default(
     room: str, steps: dict[float, int], tolerances: dict[float, int], seeds: int, paper: int
 ) -> tuple[Trial, ...]:
     """The default, the paper's numerics, and the default with other steps, s, or tolerances, N (values: seeds)."""
-    usual = setting_of(ROOMS[room]().numerics)
+    usual = setting_of(ROOMS[room]())
     return (
         Trial(DEFAULT, (), seeds),
         *([Trial(PAPER, (("numerics", PAPER),), paper)] if paper else []),
@@ -98,5 +98,5 @@ def _judged(cell: Cell, trial: Trial, ds: xr.Dataset, biases: list[Bias], store:
     finished = Store(store).finished()
     durations = [finished[key].duration for key in map(run_key, scenarios) if key in finished]
     missing = int(outcome_is(ds, "missing").sum())
-    setting = setting_of(scenarios[0].numerics)
+    setting = setting_of(scenarios[0])
     return Judged(cell, trial, setting, biases, counts(ds), median(durations or [float("nan")]), missing)

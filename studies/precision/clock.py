@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from joblib import Parallel, delayed, parallel_config
 
-from engine import Crowd, Record, Run, Scenario, Stopping, simulate
-from studies.precision.settings import Setting, under
+from engine import Crowd, Run, Scenario, simulate
+from studies.precision.settings import Setting, setting_of, under
 
 LONG = 1.0  # s of CPU time that are not measured again
 
@@ -24,7 +24,7 @@ def timed(scenario: Scenario) -> tuple[float, Run]:
 
 def pace(scenario: Scenario, stretch: float, repeats: int = 3) -> float:
     """CPU seconds per simulated second over the first `stretch` s: the median of repeats, of one if it is long."""
-    short = replace(scenario, stopping=Stopping(patience=stretch, time_limit=stretch))
+    short = scenario.with_options(blocked_after=stretch, time_limit=stretch)
     compile_kernel(scenario)
     found: list[float] = []
     while len(found) < repeats and max(found, default=0.0) < LONG:
@@ -35,7 +35,7 @@ def pace(scenario: Scenario, stretch: float, repeats: int = 3) -> float:
 
 def compile_kernel(scenario: Scenario) -> None:
     """Run one step, so that the kernel is at hand."""
-    simulate(replace(scenario, stopping=Stopping(time_limit=scenario.numerics.dt), record=Record()))
+    simulate(scenario, time_limit=scenario.numerics.dt)
 
 
 def compile_all(scenario: Scenario, settings: Iterable[Setting]) -> None:
@@ -45,15 +45,14 @@ def compile_all(scenario: Scenario, settings: Iterable[Setting]) -> None:
 
 
 def at(scenario: Scenario, when: float, inside: int | None = None) -> Scenario:
-    """The scenario begun anew with those inside at a time, s, from rest of the springs.
+    """The scenario begun anew with those inside at a time, s, from rest of the springs, by the same numerics.
 
     Parameters
     ----------
     inside : begin at the first of ten equally spaced times up to `when` at which not more persons were inside
     """
     every = when if inside is None else when / 10
-    watched = replace(scenario, record=Record(every=every), stopping=Stopping(time_limit=when))
-    run = simulate(watched)
+    run = simulate(scenario, time_limit=when, record_every=every)
     assert run.samples is not None
     counts = [run.N - int(np.sum(run.exit_time <= t)) for t in run.samples.time]
     k = len(counts) - 1 if inside is None else next((i for i, n in enumerate(counts) if n <= inside), len(counts) - 1)
@@ -61,7 +60,7 @@ def at(scenario: Scenario, when: float, inside: int | None = None) -> Scenario:
     here[run.exit_person[run.exit_time <= run.samples.time[k]]] = False
     x, y, vx, vy, spin = (getattr(run.samples, name)[k, here] for name in ("x", "y", "vx", "vy", "spin"))
     bodies = (getattr(run.start, name)[here] for name in ("radius", "mass", "v_d"))
-    return replace(scenario, crowd=Crowd.given(x, y, vx, vy, spin, *bodies))
+    return replace(under(setting_of(scenario), scenario), crowd=Crowd.given(x, y, vx, vy, spin, *bodies))
 
 
 def spread(work: Callable[..., Any], tasks: Iterable[tuple[Any, ...]], jobs: int) -> list[Any]:

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import NamedTuple
 
-from engine import BadInput, Crowd, Record, Run, Scenario, Scene, Stopping, models, simulate
+from engine import BadInput, Crowd, Run, Scenario, Scene, models, simulate
 from studies.precision.clock import spread
 from studies.precision.settings import Setting, under
 from studies.stress.energy import ledger
@@ -38,9 +38,9 @@ def measure(integrators: Iterable[str], steps: Iterable[float], time: float, job
 def drift_of(name: str, setting: Setting, time: float) -> Drift:
     """Run the gas and read its energies.
 
-    The leapfrog's places are taken back by half a step, to where its velocities stand.
+    The leapfrog's positions are taken back by half a step, to where its velocities stand.
     """
-    scenario = replace(under(setting, gas(name)), stopping=Stopping(time_limit=time), record=Record(EVERY, True))
+    scenario = under(setting, gas(name)).with_options(time_limit=time, record_every=EVERY, contacts=True)
     run = simulate(scenario)
     energy = ledger(_at_one_time(run)).total
     quarter = max(energy.size // 4, 1)
@@ -52,7 +52,7 @@ def _at_one_time(run: Run) -> Run:
     samples, dt = run.samples, run.scenario.numerics.dt
     if samples is None or run.scenario.numerics.integrator != LEAPFROG:
         return run
-    before = replace(samples, x=samples.x - 0.5 * dt * samples.vx, y=samples.y - 0.5 * dt * samples.vy)
+    before = samples._replace(x=samples.x - 0.5 * dt * samples.vx, y=samples.y - 0.5 * dt * samples.vy)
     return replace(run, samples=before)
 
 

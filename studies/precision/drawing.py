@@ -14,7 +14,7 @@ from studies.precision.cells import Cell, Judged
 from studies.precision.conservation import Drift
 from studies.precision.front import pareto
 from studies.precision.page import Results
-from studies.precision.places import Found
+from studies.precision.positions import Found
 from studies.precision.settings import PAPER, chosen
 from studies.presentation import figures
 
@@ -29,7 +29,7 @@ def draw(results: Results, folder: Path) -> None:
     """Write all figures, in the common style, without a screen."""
     mpl.use("agg")
     folder.mkdir(parents=True, exist_ok=True)
-    _write(lambda: work_precision(results.places), folder / "accuracy.png")
+    _write(lambda: work_precision(results.positions), folder / "accuracy.png")
     _write(lambda: biases(results.judged), folder / "accuracy-bias.png")
     _write(lambda: energies(results.drifts), folder / "accuracy-energy.png")
 
@@ -58,7 +58,7 @@ def work_precision(found: list[Found]) -> Figure:
     for axis in grid.flat[len(found) :]:
         axis.set_visible(False)
     for axis in grid[:, 0]:
-        axis.set_ylabel("RMS error of places / m")
+        axis.set_ylabel("RMS error of positions / m")
     _legend(figure, {p.setting.integrator for f in found for p in f.points}, tolerances)
     return figure
 

@@ -1,13 +1,13 @@
-"""The levels of `engine.accuracy`: what they choose, what error that makes, what time it saves."""
+"""The levels of `engine.options`: what they choose, what error that makes, what time it saves."""
 
 from collections.abc import Iterable
 from statistics import median
 from typing import NamedTuple
 
 from engine import Scenario
-from engine.accuracy import LEVELS
+from engine.options import LEVELS
 from engine.rooms import ROOMS
-from studies.precision import places
+from studies.precision import positions
 from studies.precision.bias import TOLERATED
 from studies.precision.cells import DEFAULT, Judged
 from studies.precision.clock import compile_kernel, timed
@@ -23,7 +23,7 @@ class Level(NamedTuple):
     room: str
     name: str
     setting: Setting
-    errors: list[tuple[places.Case, float, float]]  # median error and the floor of the case, m
+    errors: list[tuple[positions.Case, float, float]]  # median error and the floor of the case, m
     saved: list[float]  # CPU time in the jam of the paper's numerics over its own, one for each case
     biases: list[str]  # what a comparison of statistics said
 
@@ -36,14 +36,14 @@ class Level(NamedTuple):
         return "kept" if not wrong else f"NOT kept in {len(wrong)} of {len(self.errors)} cases"
 
 
-def levels(found: Iterable[places.Found], judged: Iterable[Judged]) -> list[Level]:
+def levels(found: Iterable[positions.Found], judged: Iterable[Judged]) -> list[Level]:
     """All levels and the paper's numerics, for all rooms that were measured."""
     found, judged = list(found), list(judged)
     rooms = dict.fromkeys(f.case.room for f in found)
     return [_level(room, name, found, judged) for room in rooms for name in (*LEVELS, PAPER)]
 
 
-def _level(room: str, name: str, found: list[places.Found], judged: list[Judged]) -> Level:
+def _level(room: str, name: str, found: list[positions.Found], judged: list[Judged]) -> Level:
     setting, paper = chosen(room)[name], chosen(room)[PAPER]
     here = [f for f in found if f.case.room == room]
     errors = [(f.case, f.at(setting).error, f.floor) for f in here]

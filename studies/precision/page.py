@@ -11,7 +11,7 @@ from studies.precision.conservation import SIDE, SPEED, Drift
 from studies.precision.conservation import N as GAS_N
 from studies.precision.front import pareto
 from studies.precision.levels import Level, SpeedUp
-from studies.precision.places import Found, Point
+from studies.precision.positions import Found, Point
 from studies.precision.savings import JAMMED, Saving
 from studies.precision.savings import V_D as SAVINGS_V_D
 from studies.precision.savings import N as SAVINGS_N
@@ -19,7 +19,7 @@ from studies.precision.settings import Setting, chosen
 from studies.presentation.machine import machine
 
 FIGURES = {
-    "accuracy.png": "Root mean square error of the places before chaos against CPU time",
+    "accuracy.png": "Root mean square error of the positions before chaos against CPU time",
     "accuracy-bias.png": "Bias of the statistics against the reference, with intervals",
     "accuracy-energy.png": "Drift of the energy of a passive, lossless crowd against the step",
 }
@@ -28,7 +28,7 @@ FIGURES = {
 class Results(NamedTuple):
     """All that was measured."""
 
-    places: list[Found]
+    positions: list[Found]
     drifts: list[Drift]
     judged: list[Judged]
     levels: list[Level]
@@ -38,7 +38,7 @@ class Results(NamedTuple):
     def broken(self) -> list[str]:
         """What did not run: no findings, but defects."""
         failed = [f"{j.missing} runs of {j.cell}, {j.trial.name}, failed" for j in self.judged if j.missing]
-        lost = [f"{f.case}: the reference is nowhere" for f in self.places if any(map(_is_nan, f.floors))]
+        lost = [f"{f.case}: the reference is nowhere" for f in self.positions if any(map(_is_nan, f.floors))]
         return failed + lost
 
 
@@ -50,7 +50,7 @@ def tables(results: Results) -> str:
     """All tables, each under its heading."""
     parts = [
         ("Chosen levels", _levels(results)),
-        ("Error of the places before chaos", "\n\n".join(map(_places, results.places))),
+        ("Error of the positions before chaos", "\n\n".join(map(_positions, results.positions))),
         ("Energy where it is conserved", _drifts(results.drifts)),
         ("Bias of the statistics", _biases(results.judged)),
         ("What skipping saves", _savings(results.savings)),
@@ -79,7 +79,7 @@ def _bullets(lines: Iterable[str]) -> str:
 
 
 def _levels(results: Results) -> str:
-    head = ("room", "level", "setting", "error of places", "of the paper's CPU time", "holds")
+    head = ("room", "level", "setting", "error of positions", "of the paper's CPU time", "holds")
     rows = [
         (
             level.room,
@@ -107,10 +107,10 @@ def _speed_up(found: SpeedUp) -> str:
     )
 
 
-# --- Places -------------------------------------------------------------------------------------------------
+# --- Positions ----------------------------------------------------------------------------------------------
 
 
-def _places(found: Found) -> str:
+def _positions(found: Found) -> str:
     case = found.case
     names = {setting: name for name, setting in reversed(chosen(case.room).items())}
     front = {found.points[k].setting for k in pareto([(p.cost, p.error) for p in found.points])}
@@ -164,7 +164,7 @@ def _drifts(drifts: list[Drift]) -> str:
         f"{GAS_N} persons with social force in a closed box of {SIDE:g} m, {SPEED:g} m/s at the start, neither driven "
         "nor damped nor rubbed. Drift: mean of the last quarter of the run over that of the first, less 1; swing: "
         "standard deviation in time, as a part of the energy.",
-        "The leapfrog's velocities stand half a step before its places, which are taken back by as much.",
+        "The leapfrog's velocities stand half a step before its positions, which are taken back by as much.",
         "Steps beyond the longest one allowed are left out.",
     ]
     return f"{_table(head, rows)}\n\n{_bullets(notes)}"

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from studies.precision.cells import Cell, Trial, around_default, explicit
-from studies.precision.places import TIGHT, Case
+from studies.precision.positions import TIGHT, Case
 from studies.precision.settings import Setting
 
 INTEGRATORS = ("velocity_verlet", "predictor", "semi_implicit")
@@ -17,7 +17,7 @@ class Plan(NamedTuple):
     integrators: tuple[str, ...]
     steps: tuple[float, ...]  # s
     tolerances: tuple[float, ...]  # N
-    seeds: int  # of errors of places
+    seeds: int  # of errors of positions
     stretch: float  # s, simulated for a time
     gas_time: float  # s
     cells: tuple[Cell, ...]

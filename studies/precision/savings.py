@@ -1,6 +1,5 @@
 """What skipping saves: CPU time with and without, in one jam for all."""
 
-import math
 from collections.abc import Iterator
 from dataclasses import replace
 from statistics import median
@@ -8,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from engine import Crowd, Record, Scenario, Scene, Stopping, laws, models
+from engine import Crowd, Options, Scenario, Scene, laws, models
 from engine.crowd import Given
 from engine.rooms import ROOMS
 from studies.precision.clock import at, compile_kernel, timed
@@ -18,13 +17,11 @@ FAR = 40  # wall pieces out of reach
 APART = 1.0  # m, persons on a lattice in which nobody touches
 FROZEN = {"v_d": 6.0, "N": 100, "L": 0.6, "seed": 0}  # of parisi_room: a run that ends at rest
 STILL = models.lin_dem(inertia="none")
-BLIND = models.lin_dem()._replace(vision=laws.Absent())
-SMOOTH = models.lin_dem()._replace(sliding=laws.Absent(), wall_sliding=laws.Absent())
-BARE = STILL._replace(vision=laws.Absent(), sliding=laws.Absent(), wall_sliding=laws.Absent())
-
-
+BLIND = models.lin_dem()._replace(anisotropy=laws.Absent())
+SMOOTH = models.lin_dem()._replace(friction=laws.Absent(), wall_friction=laws.Absent())
+BARE = STILL._replace(anisotropy=laws.Absent(), friction=laws.Absent(), wall_friction=laws.Absent())
 TOUCHLESS = models.lin_dem()._replace(
-    **dict.fromkeys(("normal", "sliding", "wall_normal", "wall_sliding", "rotation"), laws.Absent())
+    **dict.fromkeys(("normal", "friction", "wall_normal", "wall_friction", "rotation"), laws.Absent())
 )
 
 
@@ -53,7 +50,7 @@ def measure(stretch: float, repeats: int, compiling: bool) -> list[Saving]:
     ----------
     compiling : also what needs kernels of its own (half a minute each the first time)
     """
-    jam = replace(at(ROOMS[ROOM](v_d=V_D, N=N), JAMMED), stopping=Stopping(patience=stretch, time_limit=stretch))
+    jam = at(ROOMS[ROOM](v_d=V_D, N=N), JAMMED).with_options(blocked_after=stretch, time_limit=stretch)
     return [_saving(pair, repeats) for pair in _pairs(jam, compiling)]
 
 
@@ -78,11 +75,11 @@ def whole(scenario: Scenario) -> float:
 
 def _pairs(jam: Scenario, compiling: bool) -> Iterator[Pair]:
     if compiling:
-        yield Pair("bodies that turn", jam, replace(jam, model=STILL), 'inertia "none"')
-        yield Pair("vision", jam, replace(jam, model=BLIND), "law absent")
-        yield Pair("sliding", jam, replace(jam, model=SMOOTH), "law absent; the crowd moves more freely")
-        yield Pair("turning, vision and sliding", jam, replace(jam, model=BARE), "laws absent")
-        apart = replace(jam, crowd=on_a_lattice(), stopping=Stopping(time_limit=jam.stopping.time_limit))
+        yield Pair("rotation of bodies", jam, replace(jam, model=STILL), 'inertia "none"')
+        yield Pair("anisotropy", jam, replace(jam, model=BLIND), "law absent")
+        yield Pair("friction", jam, replace(jam, model=SMOOTH), "law absent; the crowd moves more freely")
+        yield Pair("rotation, anisotropy and friction", jam, replace(jam, model=BARE), "laws absent")
+        apart = replace(jam, crowd=on_a_lattice()).with_options(blocked_after=Options.blocked_after)
         yield Pair(
             "contact laws while nobody touches",
             apart,
@@ -91,20 +88,20 @@ def _pairs(jam: Scenario, compiling: bool) -> Iterator[Pair]:
         )
     walls = replace(jam, scene=with_far_walls(jam.scene))
     yield Pair(f"{FAR} wall pieces out of reach", walls, jam, "1: they cost nothing")
-    later = replace(at(ROOMS[ROOM](v_d=V_D, N=N), HALF_OUT, N // 2), stopping=jam.stopping)
+    later = replace(at(ROOMS[ROOM](v_d=V_D, N=N), HALF_OUT, N // 2), options=jam.options)
     yield Pair("the departed", jam, later, f"steps of {jam.crowd.N} persons over steps of {later.crowd.N}")
     for skin in (0.01, 0.5):
-        fixed = replace(jam, numerics=replace(jam.numerics, skin=skin))
+        fixed = jam.with_options(skin=skin)
         yield Pair(f"lists with a skin of {skin:g} m", fixed, jam, "over the adapted skin")
     for tolerance in (1e-6, 1e-3, 1.0):
-        other = replace(jam, numerics=replace(jam.numerics, force_tolerance=tolerance))
+        other = jam.with_options(force_tolerance=tolerance)
         usual = f"over {jam.numerics.force_tolerance:g} N"
         yield Pair(f"social force down to {tolerance:g} N", other, jam, f"{usual}; reach {reach(other):.2f} m")
     for every, contacts in ((0.1, False), (0.1, True), (0.02, True)):
         words = f"recording every {every:g} s{' with contacts' if contacts else ''}"
-        yield Pair(words, replace(jam, record=Record(every, contacts)), jam, "over no recording")
+        yield Pair(words, jam.with_options(record_every=every, contacts=contacts), jam, "over no recording")
     stuck = ROOMS["parisi_room"](**FROZEN)
-    waiting = replace(stuck, stopping=replace(stuck.stopping, at_rest=False))
+    waiting = stuck.with_options(stop_at_rest=False)
     yield Pair(
         "the wait of a jam that is at rest for good", waiting, stuck, "a whole run, over its early end", whole=True
     )
@@ -112,15 +109,14 @@ def _pairs(jam: Scenario, compiling: bool) -> Iterator[Pair]:
 
 def on_a_lattice() -> Given:
     """Persons at rest out of each other's touch, who want to go nowhere."""
-    places = np.arange(APART, 15.0 - APART / 2, APART)
-    x, y = (axis.ravel() for axis in np.meshgrid(places, places))
+    rows = np.arange(APART, 15.0 - APART / 2, APART)
+    x, y = (axis.ravel() for axis in np.meshgrid(rows, rows))
     return Crowd.given(x, y, 0.0, 0.0, 0.0, radius=0.3, mass=70.0, v_d=0.0)
 
 
 def reach(scenario: Scenario) -> float:
     """Gap at which the social force ends, m."""
-    law, tolerance = scenario.model.social, scenario.numerics.force_tolerance
-    return law.B * math.log(law.A / tolerance)
+    return laws.cutoff(scenario.model.social, scenario.numerics.force_tolerance)
 
 
 def with_far_walls(scene: Scene) -> Scene:

@@ -1,10 +1,9 @@
 """Settings of the numerics, and scenarios under them."""
 
-from dataclasses import replace
 from typing import NamedTuple
 
-from engine import Numerics, Scenario
-from engine.accuracy import LEVELS
+from engine import Scenario
+from engine.options import LEVELS
 from engine.rooms import ROOMS
 
 PAPER = "paper"
@@ -24,9 +23,10 @@ class Setting(NamedTuple):
         return f"{self.integrator}, {self.dt:g} s, {self.force_tolerance:g} N{skin}"
 
 
-def setting_of(numerics: Numerics) -> Setting:
+def setting_of(scenario: Scenario) -> Setting:
     """The setting that a scenario has."""
-    return Setting(numerics.integrator, numerics.dt, numerics.force_tolerance, numerics.skin)
+    numerics = scenario.numerics
+    return Setting(numerics.integrator, numerics.dt, numerics.force_tolerance, scenario.options.skin)
 
 
 def under(setting: Setting, scenario: Scenario) -> Scenario:
@@ -37,11 +37,10 @@ def under(setting: Setting, scenario: Scenario) -> Scenario:
     BadInput
         If the laws do not allow the step.
     """
-    numerics = Numerics(setting.dt, setting.force_tolerance, setting.skin, setting.integrator)
-    return replace(scenario, numerics=numerics)
+    return scenario.with_options(**setting._asdict())
 
 
 def chosen(room: str) -> dict[str, Setting]:
-    """The settings that `engine.accuracy` chooses for a room, by level, and the paper's."""
-    levels = {level: setting_of(ROOMS[room](accuracy=level).numerics) for level in LEVELS}
-    return levels | {PAPER: setting_of(ROOMS[room](numerics=PAPER).numerics)}
+    """The settings that the accuracies choose for a room, by level, and the paper's."""
+    levels = {level: setting_of(ROOMS[room](accuracy=level)) for level in LEVELS}
+    return levels | {PAPER: setting_of(ROOMS[room](numerics=PAPER))}

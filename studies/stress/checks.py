@@ -1,7 +1,6 @@
 """What must hold in every run, whatever it was."""
 
 import math
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -64,14 +63,14 @@ def _finite(run: Run) -> list[str]:
 
 def _ends(run: Run) -> list[str]:
     """The outcome is one of those that are named, and what it says is so."""
-    stopping, N_out = run.scenario.stopping, run.N_out
+    options, N_out = run.scenario.options, run.N_out
     last = float(run.exit_time[-1]) if N_out else 0.0
     slack = run.scenario.numerics.dt + ROUNDING
     holds = {
         "all_out": N_out == run.N and run.end_time == last,
-        "blocked": run.end_time - last >= stopping.patience - slack and N_out < run.N,
-        "time_limit": abs(run.end_time - stopping.time_limit) <= slack and N_out < run.N,
-        "unstable": 0 <= run.culprit < run.N,
+        "blocked": run.end_time - last >= options.blocked_after - slack and N_out < run.N,
+        "time_limit": abs(run.end_time - options.time_limit) <= slack and N_out < run.N,
+        "unstable": 0 <= run.unstable_person < run.N,
         "frozen": N_out < run.N,
     }
     if run.outcome not in OUTCOMES or not holds.get(run.outcome, False):
@@ -107,7 +106,7 @@ def _sampled(run: Run) -> list[str]:
     left[run.exit_person] = run.exit_time
     if (absent & (s.time[:, None] < left - run.scenario.numerics.dt - ROUNDING)).any():
         said.append("somebody is nan without having left")
-    if not np.isfinite(s.contact_slip).all():
+    if not np.isfinite(s.tangential_displacement).all():
         said.append("a tangential spring is not finite")
     return said
 
@@ -115,10 +114,10 @@ def _sampled(run: Run) -> list[str]:
 def _walls(run: Run) -> list[str]:
     """Nobody's way leads through a wall; samples far apart are taken again one step apart before that is said."""
     said = crossings(run)
-    record, dt = run.scenario.record, run.scenario.numerics.dt
-    if not said or run.max_speed * record.every < 2 * STRAY * _smallest(run) or record.every <= 1.5 * dt:
+    every, dt = run.scenario.options.record_every, run.scenario.numerics.dt
+    if not said or run.max_speed * every < 2 * STRAY * _smallest(run) or every <= 1.5 * dt:
         return said[:1]
-    return crossings(simulate(replace(run.scenario, record=replace(record, every=dt))))[:1]
+    return crossings(simulate(run.scenario, record_every=dt))[:1]
 
 
 def _bodies(run: Run) -> list[str]:
@@ -158,7 +157,7 @@ def _allowed(run: Run, step: float) -> float:
 
 def _counts_energy(run: Run) -> bool:
     scenario = run.scenario
-    every_step = scenario.record.contacts and scenario.record.every <= 1.5 * scenario.numerics.dt
+    every_step = scenario.options.contacts and scenario.options.record_every <= 1.5 * scenario.numerics.dt
     return every_step and run.N_out == 0 and run.outcome != "unstable" and kinds.is_passive(scenario.model)
 
 

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from engine import Run, laws
-from engine.scene import as_arrays
+from engine.kernel.scene_arrays import as_arrays
 from studies.stress.paths import pair_distances, pair_indices, walls_of
 
 
@@ -31,7 +31,7 @@ class Ledger(NamedTuple):
         return self.kinetic + self.pressed + self.social + self.sheared - self.stiffening
 
 
-def _nothing(p: Any, depth: np.ndarray, radius: np.ndarray) -> np.ndarray:
+def _nothing(p: Any, depth: np.ndarray, other: Any) -> np.ndarray:
     return np.zeros_like(depth)
 
 
@@ -43,15 +43,15 @@ def _hooke(p: Any, depth: np.ndarray, radius: np.ndarray) -> np.ndarray:
     return 0.5 * p.k_n * depth**2
 
 
-def _exponential(p: Any, gap: np.ndarray, radius: np.ndarray) -> np.ndarray:
-    """Integral of A exp(-gap/B) - cut from the gap to where it ends."""
-    if p.cut >= p.A:
+def _exponential(p: Any, gap: np.ndarray, tolerance: float) -> np.ndarray:
+    """Integral of A exp(-gap/B) - tolerance from the gap to where it ends."""
+    if tolerance >= p.A:
         return np.zeros_like(gap)
-    ends = p.B * math.log(p.A / p.cut)
-    return np.where(gap < ends, p.B * (p.A * np.exp(-gap / p.B) - p.cut) - p.cut * (ends - gap), 0.0)
+    ends = p.B * math.log(p.A / tolerance)
+    return np.where(gap < ends, p.B * (p.A * np.exp(-gap / p.B) - tolerance) - tolerance * (ends - gap), 0.0)
 
 
-Potential = Callable[[Any, np.ndarray, np.ndarray], np.ndarray]
+Potential = Callable[[Any, np.ndarray, Any], np.ndarray]  # of contacts: reduced radii; social: the force tolerance
 CONTACT: dict[type, Potential] = {laws.Absent: _nothing, laws.Hertz: _hertz, laws.Hooke: _hooke}
 SOCIAL: dict[type, Potential] = {laws.Absent: _nothing, laws.Exponential: _exponential}
 
@@ -66,19 +66,23 @@ def ledger(run: Run) -> Ledger:
     """The energies of a run that sampled places and contacts, with everybody inside."""
     samples, start, model = run.samples, run.start, run.scenario.model
     assert samples is not None
-    cut = run.scenario.numerics.force_tolerance
-    inertia = model.rotation.shape * start.mass * start.radius**2 if laws.turns(model.rotation) else 0.0 * start.mass
+    tolerance = run.scenario.numerics.force_tolerance
+    inertia = (
+        model.rotation.inertia_factor * start.mass * start.radius**2
+        if laws.is_present(model.rotation)
+        else 0.0 * start.mass
+    )
     kinetic = 0.5 * (start.mass * (samples.vx**2 + samples.vy**2) + inertia * samples.spin**2).sum(axis=1)
     i, j = pair_indices(run.N)
     gap = pair_distances(run) - start.radius[i] - start.radius[j]
     radius = start.radius[i] * start.radius[j] / (start.radius[i] + start.radius[j])
     pressed = _stored(CONTACT, model.normal, np.maximum(-gap, 0.0), radius)
-    social = _stored(SOCIAL, laws.cut_at(model.social, cut), gap, radius)
+    social = _stored(SOCIAL, model.social, gap, tolerance)
     if run.scenario.scene.walls:
         walls = walls_of(run)
         depth = np.where(walls.acts, start.radius[None, :, None] - walls.distance, -math.inf)
         pressed += _stored(CONTACT, model.wall_normal, np.maximum(depth, 0.0), start.radius[None, :, None])
-        social += _stored(SOCIAL, laws.cut_at(model.wall_social, cut), -depth, start.radius[None, :, None])
+        social += _stored(SOCIAL, model.wall_social, -depth, tolerance)
     sheared, stiffening = _springs(run)
     return Ledger(kinetic, pressed, social, sheared, stiffening)
 
@@ -89,8 +93,8 @@ def momentum(run: Run) -> np.ndarray:
     return np.stack([run.samples.vx @ run.start.mass, run.samples.vy @ run.start.mass])
 
 
-def _stored(table: dict[type, Potential], law: Any, depth: np.ndarray, radius: np.ndarray) -> np.ndarray:
-    return table[type(law)](law, depth, radius).reshape(depth.shape[0], -1).sum(axis=1)
+def _stored(table: dict[type, Potential], law: Any, depth: np.ndarray, other: Any) -> np.ndarray:
+    return table[type(law)](law, depth, other).reshape(depth.shape[0], -1).sum(axis=1)
 
 
 def _springs(run: Run) -> tuple[np.ndarray, np.ndarray]:
@@ -98,11 +102,11 @@ def _springs(run: Run) -> tuple[np.ndarray, np.ndarray]:
     samples, model = run.samples, run.scenario.model
     assert samples is not None
     M = samples.time.size
-    if not laws.remembers(model.sliding) and not laws.remembers(model.wall_sliding):
+    if not laws.has_history(model.friction) and not laws.has_history(model.wall_friction):
         return np.zeros(M), np.zeros(M)
     i, j, at = samples.contact_i, samples.contact_j, np.repeat(np.arange(M), samples.row_size)
     stiffness = _stiffnesses(run, i, j, at)
-    slip = samples.contact_slip
+    slip = samples.tangential_displacement
     sheared = np.bincount(at, 0.5 * stiffness * slip**2, M)
     order = np.lexsort((at, j, i))
     i, j, at, stiffness, slip = i[order], j[order], at[order], stiffness[order], slip[order]
@@ -120,13 +124,14 @@ def _stiffnesses(run: Run, i: np.ndarray, j: np.ndarray, at: np.ndarray) -> np.n
     pairs = j >= 0
     a, b, k = i[pairs], j[pairs], at[pairs]
     overlap = np.maximum(r[a] + r[b] - np.hypot(x[k, a] - x[k, b], y[k, a] - y[k, b]), 0.0)
-    if laws.remembers(model.sliding):
-        found[pairs] = model.sliding.k_t * np.sqrt(overlap * r[a] * r[b] / (r[a] + r[b]))
+    if laws.has_history(model.friction):
+        found[pairs] = model.friction.k_t * np.sqrt(overlap * r[a] * r[b] / (r[a] + r[b]))
     a, w, k = i[~pairs], -1 - j[~pairs], at[~pairs]
-    if a.size and laws.remembers(model.wall_sliding):
-        x0, y0, ux, uy, length = as_arrays(run.scenario.scene).walls[w].T
+    if a.size and laws.has_history(model.wall_friction):
+        walls = as_arrays(run.scenario.scene).walls[w]
+        x0, y0, ux, uy, length = (walls[name] for name in ("x0", "y0", "ux", "uy", "length"))
         dx, dy = x[k, a] - x0, y[k, a] - y0
         along = np.clip(dx * ux + dy * uy, 0.0, length)
         overlap = np.maximum(r[a] - np.hypot(dx - along * ux, dy - along * uy), 0.0)
-        found[~pairs] = model.wall_sliding.k_t * np.sqrt(overlap * r[a])
+        found[~pairs] = model.wall_friction.k_t * np.sqrt(overlap * r[a])
     return found

@@ -2,12 +2,11 @@
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
-from engine import Crowd, Record, Scenario, Scene, rooms
+from engine import Crowd, Scenario, Scene, rooms
 from engine.scenario import step_limit
 from studies.stress import kinds
 from studies.stress.judge import Case
@@ -169,14 +168,14 @@ def _lin_room(kind: kinds.Kind, N: int, v_d: float, time: float, dt: float = 1e-
 def _no_longer_than(dt: float, scenario: Scenario) -> Scenario:
     if scenario.numerics.dt <= dt:
         return scenario
-    steps, contacts = round(scenario.record.every / scenario.numerics.dt), scenario.record.contacts
-    return replace(scenario, numerics=replace(scenario.numerics, dt=dt), record=Record(steps * dt, contacts))
+    steps = round(scenario.options.record_every / scenario.numerics.dt)
+    return scenario.with_options(dt=dt, record_every=steps * dt)
 
 
 def _with_step(room: Callable[[], Scenario], share: float) -> Scenario:
     scenario = room()
     dt = share * step_limit(scenario)[0]
-    return replace(scenario, numerics=replace(scenario.numerics, dt=dt), record=Record(every=5 * dt))
+    return scenario.with_options(dt=dt, record_every=5 * dt)
 
 
 def _beyond(N: int) -> bool | None:

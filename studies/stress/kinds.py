@@ -7,12 +7,12 @@ nobody is driven where tau is 1e30 s, and nothing is rubbed off where mu is 0.
 from collections.abc import Iterable
 
 from engine import Model, models
-from engine.integrators import INTEGRATORS
-from engine.models import checked
+from engine.kernel.integrators import INTEGRATORS
+from engine.models import validated
 
-READINGS = ("RK", "W", "WR")  # of `models.lin_dem`: the three pairs of types among its sliding laws
+FRICTION = (("reset", "kinetic"), ("kept", "kept"), ("reset", "reset"))  # of `models.lin_dem`: persons, walls
 OTHERS = ("parisi_dorso", "helbing_2000", "lambda_anisotropic")  # functions of `engine.models` without arguments
-MODELS: dict[str, Model] = {f"lin_dem {reading}": models.lin_dem(reading) for reading in READINGS} | {
+MODELS: dict[str, Model] = {f"lin_dem ({a}, {b})": models.lin_dem(friction=a, wall_friction=b) for a, b in FRICTION} | {
     name: getattr(models, name)() for name in OTHERS if hasattr(models, name)
 }
 
@@ -31,13 +31,13 @@ STIFFNESSES, DAMPINGS = ("k_n", "k_t"), ("g_n", "g_t")
 
 def with_values(model: Model, values: dict[str, float]) -> Model:
     """The model with these values in all laws that have parameters of these names."""
-    return checked(Model(*(law._replace(**_own(law, values)) for law in model)))
+    return validated(Model(*(law._replace(**_own(law, values)) for law in model)))
 
 
 def scaled(model: Model, names: Iterable[str], factor: float) -> Model:
     """The model with the parameters of these names multiplied in all laws."""
     chosen = set(names)
-    return checked(
+    return validated(
         Model(*(law._replace(**{n: v * factor for n, v in law._asdict().items() if n in chosen}) for law in model))
     )
 

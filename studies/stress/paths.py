@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from engine import Run
-from engine.scene import as_arrays
+from engine.kernel.scene_arrays import as_arrays
 
 
 class Walls(NamedTuple):
@@ -55,7 +55,7 @@ def walls_of(run: Run) -> Walls:
     assert run.samples is not None
     arrays = as_arrays(run.scenario.scene)
     x, y = run.samples.x[:, :, None], run.samples.y[:, :, None]
-    x0, y0, ux, uy, length = arrays.walls.T
+    x0, y0, ux, uy, length = (arrays.walls[name] for name in ("x0", "y0", "ux", "uy", "length"))
     dx, dy = x - x0, y - y0
     along = np.clip(dx * ux + dy * uy, 0.0, length)
     dx, dy = dx - along * ux, dy - along * uy

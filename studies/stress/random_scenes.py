@@ -10,7 +10,7 @@ from functools import partial
 
 import numpy as np
 
-from engine import Crowd, Exit, Model, Numerics, Record, Scenario, Scene, Stopping
+from engine import Crowd, Exit, Model, Options, Scenario, Scene
 from engine.crowd import Given, Uniform
 from engine.scenario import step_limit
 from studies.stress import kinds
@@ -19,6 +19,7 @@ from studies.stress.judge import Case
 ROOT_SEED = 20161
 DRIVEN, PASSIVE, LOSSLESS = 0.6, 0.25, 0.15  # shares of the scenes
 MOST_STEPS, MOST_PASSIVE_STEPS = 4000, 500
+FORCE_TOLERANCE = 1e-3  # N
 Points = list[tuple[float, float]]
 Segment = tuple[float, float, float, float]
 
@@ -52,12 +53,11 @@ def random_scenario(number: int, kind: kinds.Kind) -> Scenario:
     scene = Scene() if closed and rng.random() < 0.3 else random_scene(rng, size, 0 if closed else width, closed)
     crowd = random_crowd(rng, size, largest)
     share, time = rng.uniform(0.1, 0.95), rng.uniform(0.3, 4.0)
-    patience = rng.choice([0.2, 120.0])
+    blocked_after = rng.choice([0.2, 120.0])
     seed = int(rng.integers(1000))
     every = 1 if closed else int(rng.integers(2, 12))
-    return at_share(
-        scene, crowd, model, kind[1], share, time, patience, seed, every, MOST_PASSIVE_STEPS if closed else MOST_STEPS
-    )
+    most = MOST_PASSIVE_STEPS if closed else MOST_STEPS
+    return at_share(scene, crowd, model, kind[1], share, time, blocked_after, seed, every, most)
 
 
 def at_share(
@@ -67,7 +67,7 @@ def at_share(
     integrator: str,
     share: float,
     time: float,
-    patience: float = 120.0,
+    blocked_after: float = 120.0,
     seed: int = 0,
     every: int = 1,
     most_steps: int | None = None,
@@ -76,15 +76,16 @@ def at_share(
 
     Parameters
     ----------
-    time, patience : when it ends, s
+    time, blocked_after : when it ends, s
     every : steps from one sample to the next; at 1, contacts are sampled too
     most_steps : after which it ends in any case
     """
-    cautious = Scenario(scene, crowd, model, Numerics(dt=1e-8, integrator=integrator), Stopping(time_limit=1.0))
+    numerics = Options(dt=1e-8, integrator=integrator, force_tolerance=FORCE_TOLERANCE, time_limit=1.0)
+    cautious = Scenario(scene, crowd, model, numerics, seed)
     dt = share * min(step_limit(cautious)[0], 1.0)
     time = min(time, dt * most_steps) if most_steps else time
-    numerics, stopping = Numerics(dt=dt, integrator=integrator), Stopping(patience, max(time, 2 * dt))
-    return Scenario(scene, crowd, model, numerics, stopping, Record(every * dt, every == 1), seed)
+    until = {"blocked_after": blocked_after, "time_limit": max(time, 2 * dt)}
+    return cautious.with_options(dt=dt, **until, record_every=every * dt, contacts=every == 1)
 
 
 def random_model(rng: np.random.Generator, model: Model) -> Model:

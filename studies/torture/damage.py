@@ -15,7 +15,7 @@ from sweep import Grid, Store, gather, sweep
 from sweep.storage.compact import compact
 from sweep.storage.verify import identified, verify
 
-GRID = Grid("lin_room", v_d=[1.0, 1.4], seed=range(2), N=12, size=4.0, time_limit=4.0, every=0.5, contacts=True)
+GRID = Grid("lin_room", v_d=[1.0, 1.4], seed=range(2), N=12, size=4.0, time_limit=4.0, record_every=0.5, contacts=True)
 TRUNCATIONS, FLIPS = 50, 200
 QUICK_TRUNCATIONS, QUICK_FLIPS = 4, 12
 SEED = 20161

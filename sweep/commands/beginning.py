@@ -10,7 +10,8 @@ from click.shell_completion import get_completion_class
 from engine.errors import require
 from engine.rooms import ROOMS
 from sweep.commands.run import parameter_words
-from sweep.grid import SEED, Room
+from sweep.grid import SEED
+from sweep.rooms import Room
 from sweep.schema import PARAMETERS
 from sweep.storage.durable import replace_durably, require_target
 

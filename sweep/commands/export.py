@@ -36,7 +36,7 @@ def export(source: Path, target: Path, rows: str, unit: str) -> None:
     jamsweep export results/mine --to exits.parquet
     jamsweep export results/mine --to runs.csv --rows runs
 
-    Trajectories need a run recorded with --every, forces one with --contacts as well.
+    Trajectories need a run recorded with --record-every, forces one with --contacts as well.
     """  # noqa: D301  click reads \b as a character
     suffix, known = target.suffix.lower(), [*TRAJECTORIES, *TABLES]
     require(suffix in known, "file", f"'{target}'", "has no suffix of an export", f"choose one of {', '.join(known)}")

@@ -42,7 +42,7 @@ def view(
     """Make a page that plays the run in FILE, in any browser and without a network.
 
     \b
-    jamsweep run lin_room --v-d 1.6 --every 0.1 --contacts -o run.nc
+    jamsweep run lin_room --v-d 1.6 --record-every 0.1 --contacts -o run.nc
     jamsweep view run.nc --open
     jamsweep view run.nc --mp4 run.mp4
     """  # noqa: D301  click reads \b as a character

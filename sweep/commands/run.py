@@ -8,11 +8,11 @@ from typing import Any, get_type_hints
 
 import click
 
-from engine import FINGERPRINT, Run, Scenario, simulate
-from engine.errors import require
+from engine import Options, Run, Scenario, simulate
 from engine.rooms import ROOMS
-from sweep.grid import Room, plain_kind
-from sweep.schema import PARAMETERS, run_key
+from sweep.grid import plain_kind
+from sweep.rooms import Room, is_in_a_file, room_named
+from sweep.schema import PARAMETERS, engine_of, run_key
 from sweep.storage.durable import require_target
 from sweep.storage.runfile import write_run
 
@@ -26,9 +26,8 @@ class Rooms(click.Group):
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command:
         """The subcommand of a room."""
-        name = cmd_name.replace("-", "_")
-        require(name in ROOMS, "room", repr(cmd_name), "is not known", f"choose one of {', '.join(ROOMS)}")
-        return _room_command(name, ROOMS[name])
+        name = cmd_name if is_in_a_file(cmd_name) else cmd_name.replace("-", "_")
+        return _room_command(name, room_named(name))
 
 
 @click.group(cls=Rooms)
@@ -37,8 +36,9 @@ def run() -> None:
 
     \b
     jamsweep run lin_room --v-d 1.0 --N 200 --seed 1 -o run.nc
-    jamsweep run parisi_room --v-d 4 --every 0.1 --contacts -o run.nc
+    jamsweep run parisi_room --v-d 4 --record-every 0.1 --contacts -o run.nc
     jamsweep run lin_room --v-d 1.6 --json
+    jamsweep run my_rooms.py:my_room --seed 3
 
     Each room has options of its own: jamsweep run lin_room --help.
     """  # noqa: D301  click reads \b as a character
@@ -74,7 +74,7 @@ def _plain(result: Run) -> dict[str, Any]:
     """What a program wants to know of a run; times in s."""
     ended = {"outcome": result.outcome, "end_time": float(result.end_time), "words": str(result)}
     persons = {"persons": int(result.N), "out": int(result.N_out), "exit_time": result.exit_time.tolist()}
-    return ended | persons | {"run_key": run_key(result.scenario), "engine": FINGERPRINT}
+    return ended | persons | {"run_key": run_key(result.scenario), "engine": engine_of(result.scenario)}
 
 
 def options_of(room: Room) -> list[click.Parameter]:
@@ -86,11 +86,14 @@ def options_of(room: Room) -> list[click.Parameter]:
 
 
 def parameter_words(room: Room) -> dict[str, str]:
-    """What the section Parameters of a docstring says about each: "A, B : text" holds for both."""
-    section = inspect.getdoc(room) or ""
-    section = section.partition("Parameters\n")[2].partition("\n\n")[0]
-    entries = re.findall(r"^(\w+(?:, \w+)*) : (.*(?:\n\s+.*)*)", section, flags=re.MULTILINE)
-    return {name: " ".join(text.split()) for names, text in entries for name in names.split(", ")}
+    """Meaning of each keyword: of the room's own by its docstring (numpydoc, "A, B : float" holds for both)."""
+    return _described(Options, "Attributes") | _described(room, "Parameters")
+
+
+def _described(thing: object, section: str) -> dict[str, str]:
+    text = (inspect.getdoc(thing) or "").partition(f"{section}\n")[2].partition("\n\n")[0]
+    entries = re.findall(r"^(\w+(?:, \w+)*)(?: : .*)?\n((?:[ \t]+.*\n?)+)", text, flags=re.MULTILINE)
+    return {name: " ".join(words.split()) for names, words in entries for name in names.split(", ")}
 
 
 def first_line(room: Room) -> str:

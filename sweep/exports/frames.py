@@ -14,7 +14,7 @@ from sweep.schema import MM
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 BEYOND = MM  # m, least distance beyond the door at which a person who has left is shown
-UNEQUAL = 1e-6  # of the interval, in which times of samples may differ from equal spacing
+UNEQUAL = 1e-6  # of the interval, in which times may differ from equal spacing
 NEVER = np.iinfo(np.int64).max
 NEEDED = ("time", "x", "y", "exit_time", "exit_person", "exit_x", "exit_y", "exit_door", "door")
 
@@ -63,8 +63,10 @@ def frames(run: xr.Dataset) -> Frames:
         If it was not recorded, has several runs, or its samples are not equally spaced.
     """
     check_recorded(run)
-    time, rate = _clock(run)
-    x, y = (run[name].transpose("sample", "person").values.astype(np.float64) for name in ("x", "y"))
+    time, interval = _clock(run)
+    rate = _round(1.0 / interval)
+    ahead = interval * np.arange(time.size) - time
+    x, y = (_shifted(run[name].transpose("sample", "person").values, time, ahead) for name in ("x", "y"))
     lines, left = doors(run), departures(run, time.size, x.shape[1], rate)
     last = max(int(left.frame[left.frame < NEVER].max(initial=0)) + 2, time.size)
     at = np.full((last, x.shape[1], 2), np.nan)
@@ -79,7 +81,7 @@ def frames(run: xr.Dataset) -> Frames:
 def check_recorded(run: xr.Dataset) -> None:
     """Raise `BadInput` unless this is one run with samples."""
     absent = [name for name in NEEDED if name not in run.variables]
-    remedy = "record it with every=0.1 (in a shell: --every 0.1) and read it with sweep.read_run"
+    remedy = "record it with record_every=0.1 (in a shell: --record-every 0.1) and read it with sweep.read_run"
     require(not absent, "run", f"without {', '.join(absent)}", "has no trajectories", remedy)
     single = run["x"].ndim == 2 and run["exit_time"].ndim == 1
     require(single, "dataset", f"of dimensions {', '.join(map(str, run.dims))}", "is not one run", "pass a single run")
@@ -126,16 +128,35 @@ def departures(run: xr.Dataset, samples: int, persons: int, rate: float) -> Depa
 
 
 def _clock(run: xr.Dataset) -> tuple[Floats, float]:
-    """Times of the samples, s, and frames a second."""
+    """Times of the samples, s, and the sampling interval that was asked for: each is that of the nearest step."""
     time = run["time"].values.astype(np.float64)
     require(time.size > 1, "run", f"of {time.size} samples", "has no frame rate", "record it more often")
-    steps = np.diff(time)
-    interval = float(np.mean(steps))
-    equal = abs(time[0]) < UNEQUAL * interval and np.abs(steps - interval).max() < UNEQUAL * interval
+    mean = (time[-1] - time[0]) / (time.size - 1)
+    try:
+        options = json.loads(run.attrs["scenario"])["options"]
+        interval, off = float(options["record_every"]), 0.51 * float(options["dt"])
+    except (KeyError, TypeError, ValueError):
+        interval, off = mean, 0.0
+    spacing = np.diff(time)
+    equal = np.abs(time - interval * np.arange(time.size)).max() <= off + UNEQUAL * mean
     remedy = "pass all samples of a run, in order"
-    require(bool(equal), "samples", f"{steps.min():g} to {steps.max():g} s apart", "are no frames from time 0", remedy)
-    rate = 1.0 / interval
-    return time, float(round(rate)) if abs(rate - round(rate)) < UNEQUAL * rate else rate
+    apart = f"{spacing.min():g} to {spacing.max():g} s apart"
+    require(bool(equal), "samples", apart, "are no frames from time 0", remedy)
+    return time, interval
+
+
+def _shifted(positions: Floats, time: Floats, ahead: Floats) -> Floats:
+    """Positions (samples, persons) so much later, s, by the velocity to the next sample, or else from the last, m."""
+    known = positions.astype(np.float64)
+    velocity = np.full_like(known, np.nan)
+    velocity[:-1] = np.diff(known, axis=0) / np.diff(time)[:, None]
+    velocity[1:] = np.where(np.isfinite(velocity[1:]), velocity[1:], velocity[:-1])
+    return known + np.where(np.isfinite(velocity), velocity, 0.0) * ahead[:, None]
+
+
+def _round(rate: float) -> float:
+    """A rate that is whole up to rounding, as the whole number."""
+    return float(round(rate)) if abs(rate - round(rate)) < UNEQUAL * rate else rate
 
 
 def _step_out(at: Floats, lines: Doors, left: Departure, person: int, rate: float) -> None:

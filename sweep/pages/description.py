@@ -32,9 +32,7 @@ def parameters_of(run: xr.Dataset) -> Pairs:
     scenario = _scenario(run)
     laws = scenario.get("model", {})
     described = [(kind, _spoken(law)) for kind, law in laws.items() if isinstance(law, dict) and kind != "is"]
-    rest = [
-        (part, _spoken(scenario[part] | {"is": ""})) for part in ("numerics", "stopping", "record") if part in scenario
-    ]
+    rest = [(part, _spoken(scenario[part] | {"is": ""})) for part in ["options"] if part in scenario]
     return [*own, *((kind.replace("_", " "), text) for kind, text in described), *rest, ("seed", _seed(scenario))]
 
 
@@ -44,14 +42,16 @@ def provenance_of(run: xr.Dataset, contacts: Contacts, every: int) -> Pairs:
     time = run.time.values
     step = f", one each {time[1] - time[0]:.4g} s" if time.size > 1 else ""
     part = f" (each of {every} recorded)" if every > 1 else ""
-    law = "elastic part of the normal contact law at the overlap of the recorded places"
     known = {name: str(run.attrs[name]) for name in run.attrs if name.endswith("version") or name in ("run_key",)}
     return [
         ("outcome", f"{outcome} after {float(run.end_time):.4g} s, {run.exit_time.count().item()} persons out"),
-        ("samples", f"{time.size}{step}{part}; places in this page to 1 mm, between samples interpolated"),
-        ("speed", "recorded" if "vx" in run else "from the places of successive samples"),
-        ("contacts", "recorded" if contacts.recorded else "none recorded; found from places and radii"),
-        ("contact force", "law not known to this engine" if contacts.force is None else f"on a person, sum of: {law}"),
+        ("samples", f"{time.size}{step}{part}; positions in this page to 1 mm, between samples interpolated"),
+        ("speed", "recorded" if "vx" in run else "from the positions of successive samples"),
+        ("contacts", "recorded" if contacts.recorded else "none recorded; found from positions and radii"),
+        (
+            "contact force",
+            "not recorded" if contacts.force is None else "on a person, sum of the recorded normal forces",
+        ),
         ("engine", str(run.attrs.get("engine_fingerprint", "unknown"))),
         *((name.replace("_", " "), value) for name, value in known.items()),
         ("page made by", f"jamsweep {version()}"),

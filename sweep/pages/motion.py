@@ -15,7 +15,7 @@ def check_playable(run: xr.Dataset, name: str = "dataset") -> None:
     """Raise `BadInput` unless this is one run, and it has samples."""
     whole = all(part in run.variables for part in NEEDED) and run.outcome.ndim == 0
     require(whole, "run file", f"'{name}'", "holds no run", "name a file that `jamsweep run ... -o` wrote")
-    remedy = "run it again with `--every 0.1`, and `--contacts` to see who touches whom"
+    remedy = "run it again with `--record-every 0.1`, and `--contacts` to see who touches whom"
     require("time" in run and run.sizes["sample"] > 0, "run", f"'{name}'", "has no samples to play", remedy)
 
 

@@ -16,6 +16,7 @@ from sweep.running.interruption import two_stages
 from sweep.running.limits import Limits
 from sweep.running.notes import command, note_of
 from sweep.running.plan import Task
+from sweep.running.shipping import packed
 from sweep.running.slot import Job
 from sweep.running.worker import Done, Outdated, Result, prepare
 from sweep.storage.store import Store
@@ -98,7 +99,7 @@ class Execution:
 
     def _jobs(self) -> Iterator[Job]:
         path = str(self._store.path.absolute())
-        return (Job(task.key, task.scenario, path, self._manner.limits) for task in self._tasks)
+        return (Job(task.key, packed(task.scenario), path, self._manner.limits) for task in self._tasks)
 
     def _note(self, result: Result) -> None:
         """Note and say a failure, or note that an earlier one is overcome."""

@@ -10,6 +10,7 @@ import re
 import shlex
 
 from sweep.grid import Grid, Point, named
+from sweep.rooms import is_in_a_file
 from sweep.running.limits import Limits
 from sweep.running.slot import ASIDE, LATE
 from sweep.running.worker import Failed
@@ -26,7 +27,7 @@ def note_of(failure: Failed, grid: Grid, point: Point) -> str:
 def command(grid: Grid, point: Point) -> str:
     """The line that runs a point of a grid again, to the shell; for a room of one's own through Python."""
     parameters = {**grid.constants, **point}
-    if ":" not in grid.name:
+    if ":" not in grid.name or is_in_a_file(grid.name):
         options = (_option(name, value) for name, value in parameters.items())
         return " ".join(["jamsweep", "run", grid.name, *options])
     module, _, name = grid.name.partition(":")

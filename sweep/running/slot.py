@@ -26,6 +26,7 @@ from engine.errors import require
 from sweep.errors import SweepStopped
 from sweep.running.attached import ASK, PINNED, attach, ctrl_c_left_alone
 from sweep.running.limits import Limits, megabytes
+from sweep.running.shipping import PackedScenario, unpacked
 from sweep.running.worker import Done, Failed, Kind, Result, failed, kind_of, prepare, work
 from sweep.storage.store import Store
 
@@ -42,7 +43,7 @@ class Job(NamedTuple):
     """One run, as it is shipped: data only."""
 
     key: str
-    scenario: Scenario
+    scenario: Scenario | PackedScenario
     store: str  # absolute path
     limits: Limits = Limits()
     token: str = ""  # name of a file in the store that this machine must see too
@@ -107,7 +108,7 @@ class Slot:
 
     def _attempt(self, job: Job) -> Result:
         executor = self._open(job.limits)
-        kind = kind_of(job.scenario)
+        kind = kind_of(unpacked(job.scenario))
         try:
             if kind not in self._compiled:
                 self._watched(executor.submit(prepare, job.scenario), job.limits._replace(timeout=COMPILING))

@@ -3,9 +3,10 @@
 import time
 import traceback
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from engine import Record, Scenario, simulate
+from engine import Scenario, simulate
+from sweep.running.shipping import PackedScenario, unpacked
 from sweep.schema import run_key
 from sweep.storage.store import Store
 
@@ -38,12 +39,12 @@ Result = Done | Failed | Outdated
 Kind = tuple[object, ...]
 
 
-def work(scenario: Scenario, store: str, key: str) -> Result:
+def work(shipped: Scenario | PackedScenario, store: str, key: str) -> Result:
     """Simulate a scenario and keep the run.
 
     Parameters
     ----------
-    scenario : what to run
+    shipped : what to run
     store : path of the store
     key : what the parent finds the run by
 
@@ -52,9 +53,10 @@ def work(scenario: Scenario, store: str, key: str) -> Result:
     Done, Failed or Outdated
         No exception leaves, except an interruption from the keyboard.
     """
-    if run_key(scenario) != key:
-        return Outdated(key)
     try:
+        scenario = unpacked(shipped)
+        if run_key(scenario) != key:
+            return Outdated(key)
         return _kept(scenario, Store(store), key)
     except Exception as error:
         return failed(key, error)
@@ -68,14 +70,14 @@ def failed(key: str, error: BaseException) -> Failed:
 
 def kind_of(scenario: Scenario) -> Kind:
     """What decides which compiled code a scenario needs."""
-    return (*map(type, scenario.model), scenario.numerics.integrator)
+    return (*map(type, scenario.model), scenario.numerics.integrator, scenario.law_fingerprint)
 
 
-def prepare(scenario: Scenario) -> None:
+def prepare(shipped: Scenario | PackedScenario) -> None:
     """Have the code that a scenario needs compiled, or loaded from numba's cache on disk: a run of one step."""
-    short = replace(scenario.stopping, time_limit=scenario.numerics.dt)
     with suppress(Exception):  # the run itself tells
-        simulate(replace(scenario, stopping=short, record=Record()))
+        scenario = unpacked(shipped)
+        simulate(scenario, time_limit=scenario.numerics.dt, record_every=0.0, contacts=False)
 
 
 def _kept(scenario: Scenario, store: Store, key: str) -> Done:

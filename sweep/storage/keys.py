@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from contextlib import suppress
 from typing import NamedTuple
 
+from engine import Scenario
+from engine.fingerprint import package_fingerprint
 from sweep import schema
 from sweep.errors import CannotWrite
 from sweep.grid import SEED, Grid, Point
@@ -24,7 +26,7 @@ class Wanted(NamedTuple):
 def keys_of(grid: Grid, store: Store | None = None) -> list[Wanted]:
     """Keys of all points, in their order; kept in the store, if one is given, until grid, schema or engine change."""
     if store is None or not grid.seeds_alone:  # rooms of one's own may be edited, which no fingerprint tells
-        return list(map(_wanted, _canonical(grid)))
+        return [_wanted(text) for text in _canonical(grid)] if grid.seeds_alone else _of_each(grid)
     mark = key_mark(grid)
     kept = _kept(store, mark, len(grid))
     if kept is None:
@@ -35,19 +37,22 @@ def keys_of(grid: Grid, store: Store | None = None) -> list[Wanted]:
 
 
 def key_mark(grid: Grid) -> str:
-    """Hash of what decides about the keys of a grid."""
-    return schema.key_of(grid.to_json())
+    """Hash of what decides about the keys of a grid: rooms and options are part of it, which no run's key names."""
+    return schema.key_of(grid.to_json(), engine=package_fingerprint())
 
 
 def _wanted(canonical: str) -> Wanted:
     return Wanted(schema.key_of(canonical), schema.scenario_hash(canonical))
 
 
+def _of_each(grid: Grid) -> list[Wanted]:
+    """Keys of all points of a room of one's own."""
+    scenarios: Iterator[Scenario] = map(grid.scenario, grid.points())
+    return [Wanted(schema.run_key(s), schema.scenario_hash(s.canonical())) for s in scenarios]
+
+
 def _canonical(grid: Grid) -> Iterator[str]:
-    """Canonical texts; where the seed decides nothing else, a cell's scenario is built once."""
-    if not grid.seeds_alone:
-        yield from (grid.scenario(point).canonical() for point in grid.points())
-        return
+    """Canonical texts of a room of the engine, where the seed decides nothing else; a cell's scenario is built once."""
     cells: dict[tuple[object, ...], tuple[str, str]] = {}
     for point in grid.points():
         cell = grid.cell(point)

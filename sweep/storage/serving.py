@@ -65,11 +65,10 @@ def changed(stale: Mapping[str, Entry], total: int) -> str:
     """How many runs are of another engine, and of which."""
     engines = ", ".join(sorted({entry.engine for entry in stale.values()}))
     are = "is" if len(stale) == 1 else "are"
-    return f"{len(stale)} of {total} runs {are} done by another state of the engine ({engines}; now {FINGERPRINT})"
+    which = f"another state of the engine or of a law ({engines}; now {FINGERPRINT})"
+    return f"{len(stale)} of {total} runs {are} done by {which}"
 
 
 def _by_scenario(finished: Mapping[str, Entry]) -> dict[str, Entry]:
     """Scenario -> the run of another engine that was finished last."""
-    return {
-        e.scenario: e for e in finished.values() if e.engine not in ("", FINGERPRINT) and e.schema == SCHEMA_VERSION
-    }
+    return {e.scenario: e for e in finished.values() if e.engine != "" and e.schema == SCHEMA_VERSION}

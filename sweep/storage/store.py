@@ -9,10 +9,10 @@ from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
-from engine import FINGERPRINT, Run
+from engine import Run
 from engine.errors import require
 from sweep.errors import CannotWrite, DamagedFile
-from sweep.schema import SCHEMA_VERSION, run_key, scenario_hash
+from sweep.schema import SCHEMA_VERSION, engine_of, run_key, scenario_hash
 from sweep.storage import shard
 from sweep.storage.durable import is_dead, owner_of, refuse, replace_durably, require_writable, sha256_of
 from sweep.storage.manifest import Entry, Manifest
@@ -137,7 +137,7 @@ class Store:
         canonical, path = run.scenario.canonical(), self.file(run_key(run.scenario))
         with self.writing():
             write_run(run, path)
-            self.enter(path, round(duration, 6), scenario_hash(canonical), FINGERPRINT, SCHEMA_VERSION)
+            self.enter(path, round(duration, 6), scenario_hash(canonical), engine_of(run.scenario), SCHEMA_VERSION)
 
     def enter(self, path: Path, duration: float, scenario: str, engine: str, schema: int) -> None:
         """Have the run count that a file holds, as it is."""

@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
+from engine.dispatch import Generic
 from markdown_it import MarkdownIt
 
 from engine import laws
-from engine.dispatch import Generic
 from sweep import cli
 from sweep.gridfile import read_gridfile, read_until
 

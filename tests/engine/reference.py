@@ -12,13 +12,13 @@ class Reference:
     def __init__(self, scenario):
         self.model, self.dt = scenario.model, scenario.numerics.dt
         self.walls, self.exit = scenario.scene.walls, scenario.scene.exits[0]
-        start = scenario.crowd.draw(scenario.seed, np.empty((0, 5)))
+        start = scenario.crowd.draw(scenario.seed, walls=None)
         self.x = np.stack([start.x, start.y], axis=1)
         self.v = np.stack([start.vx, start.vy], axis=1)
         self.w, self.r, self.m, self.v_d = start.spin, start.radius, start.mass, start.v_d
-        self.inertia = self.model.rotation.shape * self.m * self.r**2
+        self.inertia = self.model.rotation.inertia_factor * self.m * self.r**2
         N = len(self.r)
-        self.slip, self.wall_slip = np.zeros((N, N)), np.zeros((len(self.walls), N))
+        self.displacement, self.wall_displacement = np.zeros((N, N)), np.zeros((len(self.walls), N))
         self.force, self.torque = self.forces(0.0)
 
     def step(self):
@@ -53,13 +53,13 @@ class Reference:
         n = apart / d[..., None]
         gap = d - self.r[:, None] - self.r[None, :]
         cos_beta = -np.einsum("ik,ijk->ij", e, n)
-        social = self.model.social.A * np.exp(-gap / self.model.social.B) * (1 + self.model.vision.phi * cos_beta)
+        social = self.model.social.A * np.exp(-gap / self.model.social.B) * (1 + self.model.anisotropy.phi * cos_beta)
         radius = self.r[:, None] * self.r / (self.r[:, None] + self.r)
         mass = self.m[:, None] * self.m / (self.m[:, None] + self.m)
         u = self.v[:, None] - self.v[None, :]
-        turning = self.r[:, None] * self.w[:, None] + (self.r * self.w)[None, :]
-        laws = self.model.normal, self.model.sliding
-        F_n, F_t, self.slip = contact(*laws, -gap, radius, mass, n, u, turning, self.slip, dt)
+        of_spin = self.r[:, None] * self.w[:, None] + (self.r * self.w)[None, :]
+        laws = self.model.normal, self.model.friction
+        F_n, F_t, self.displacement = contact(*laws, -gap, radius, mass, n, u, of_spin, self.displacement, dt)
         t = np.stack([-n[..., 1], n[..., 0]], axis=-1)
         force = (social + F_n)[..., None] * n + F_t[..., None] * t
         return force.sum(axis=1), -self.r * F_t.sum(axis=1)
@@ -72,27 +72,27 @@ class Reference:
         d = np.linalg.norm(apart, axis=1)
         n, gap = apart / d[:, None], d - self.r
         social = self.model.wall_social.A * np.exp(-gap / self.model.wall_social.B)
-        laws = self.model.wall_normal, self.model.wall_sliding
-        state = self.r, self.m, n, self.v, self.r * self.w, self.wall_slip[k], dt
-        F_n, F_t, self.wall_slip[k] = contact(*laws, -gap, *state)
+        laws = self.model.wall_normal, self.model.wall_friction
+        state = self.r, self.m, n, self.v, self.r * self.w, self.wall_displacement[k], dt
+        F_n, F_t, self.wall_displacement[k] = contact(*laws, -gap, *state)
         t = np.stack([-n[:, 1], n[:, 0]], axis=1)
         return (social + F_n)[:, None] * n + F_t[:, None] * t, -self.r * F_t
 
 
-def contact(normal, sliding, overlap, radius, mass, n, u, turning, slip, dt):
-    """Normal and tangential force, and the springs' new slips."""
+def contact(normal, friction, overlap, radius, mass, n, u, of_spin, displacement, dt):
+    """Normal and tangential force, and the new displacements of the springs."""
     touch = overlap > 0
     alpha = np.sqrt(np.where(touch, overlap, 0.0) * radius)
     v_n = (u * n).sum(axis=-1)
-    v_t = u[..., 1] * n[..., 0] - u[..., 0] * n[..., 1] - turning
+    v_t = u[..., 1] * n[..., 0] - u[..., 0] * n[..., 1] - of_spin
     F_n = alpha * (normal.k_n * overlap - mass * normal.g_n * v_n)
-    if not hasattr(sliding, "k_t"):
-        return F_n, -sliding.mu * np.abs(F_n) * np.tanh(v_t / sliding.v_0), slip
-    slip = np.where(touch, slip + v_t * dt, 0.0)
-    F_t = -alpha * (sliding.k_t * slip + mass * sliding.g_t * v_t)
-    limit = sliding.mu * np.abs(F_n)
+    if not hasattr(friction, "k_t"):
+        return F_n, -friction.mu * np.abs(F_n) * np.tanh(v_t / friction.v_0), displacement
+    displacement = np.where(touch, displacement + v_t * dt, 0.0)
+    F_t = -alpha * (friction.k_t * displacement + mass * friction.g_t * v_t)
+    limit = friction.mu * np.abs(F_n)
     slips = np.abs(F_t) > limit
     F_t = np.where(slips, np.sign(F_t) * limit, F_t)
-    at_limit = -(F_t / np.where(touch, alpha, 1.0) + mass * sliding.g_t * v_t) / sliding.k_t
-    rest = at_limit if type(sliding).__name__ == "Mindlin" else 0.0
-    return F_n, F_t, np.where(slips, rest, slip)
+    at_limit = -(F_t / np.where(touch, alpha, 1.0) + mass * friction.g_t * v_t) / friction.k_t
+    rest = at_limit if type(friction).__name__ == "Mindlin" else 0.0
+    return F_n, F_t, np.where(slips, rest, displacement)

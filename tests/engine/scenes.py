@@ -2,30 +2,28 @@
 
 import numpy as np
 
-from engine import Crowd, Model, Numerics, Record, Scenario, Scene, Stopping, laws
+from engine import Crowd, Options, Scenario, Scene, laws, models
+from engine.kernel.scene_arrays import as_arrays
+from engine.rooms import square_room
+
+PAPERS = {"integrator": "velocity_verlet", "force_tolerance": 1e-3}  # numerics of Lin et al., at any step
+# A kernel is compiled for the types of a model's laws, so what is not wanted is switched off by numbers.
+UNDRIVEN = {"tau": 1e30, "A": 0.0}  # s, N
+SMOOTH = {"g_n": 0.0, "g_t": 0.0, "mu": 0.0}
+NO_WALLS = as_arrays(Scene()).walls
 
 
-def passive(case, dt=None, every=None, contacts=False, sliding=laws.Mindlin, **changes):
+def passive(case, dt=None, every=None, contacts=False, friction="kept"):
     """The scenario of a case of tests/oracle/cases.py: contacts only, nobody drives."""
     dt = case["dt"] if dt is None else dt
     normal = laws.Hertz(case["k_n"], case["g_n"])
-    tangential = sliding(case["k_t"], case["g_t"], case["mu"])
-    model = Model(
-        normal=normal,
-        sliding=tangential,
-        wall_normal=normal,
-        wall_sliding=tangential,
-        rotation=laws.Turning(0.4),
-    )
+    model = models.lin_dem(**UNDRIVEN, friction=friction, wall_friction=friction)
+    tangential = type(model.friction)(case["k_t"], case["g_t"], case["mu"])
+    contact = {"normal": normal, "friction": tangential, "wall_normal": normal, "wall_friction": tangential}
     crowd = Crowd.given(**{k: np.array(case[k]) for k in ("x", "y", "vx", "vy", "spin", "radius", "mass")}, v_d=0.0)
-    return Scenario(
-        scene=box(case["box"]) if case["box"] else Scene(),
-        crowd=crowd,
-        model=model._replace(**changes),
-        numerics=Numerics(dt=dt),
-        stopping=Stopping(time_limit=case["t_end"]),
-        record=Record(every=dt if every is None else every, contacts=contacts),
-    )
+    every = dt if every is None else every
+    options = Options(**PAPERS, dt=dt, time_limit=case["t_end"], record_every=every, contacts=contacts)
+    return Scenario(box(case["box"]) if case["box"] else Scene(), crowd, model._replace(**contact), options)
 
 
 def box(sides):
@@ -37,7 +35,7 @@ def box(sides):
 def energy(run):
     """Kinetic energy and that of the springs at every sample, J (M,)."""
     samples, start, model = run.samples, run.start, run.scenario.model
-    inertia = model.rotation.shape * start.mass * start.radius**2
+    inertia = model.rotation.inertia_factor * start.mass * start.radius**2
     kinetic = 0.5 * start.mass * (samples.vx**2 + samples.vy**2) + 0.5 * inertia * samples.spin**2
     return kinetic.sum(axis=1) + _springs(run)
 
@@ -50,7 +48,7 @@ def _springs(run):
             overlap, radius = _touch(run, k, samples.contact_i[c], samples.contact_j[c], walls)
             alpha = np.sqrt(radius * overlap)
             stored[k] += 0.4 * model.normal.k_n * alpha * overlap**2
-            stored[k] += 0.5 * model.sliding.k_t * alpha * samples.contact_slip[c] ** 2
+            stored[k] += 0.5 * model.friction.k_t * alpha * samples.tangential_displacement[c] ** 2
         first += size
     return stored
 
@@ -65,21 +63,35 @@ def _touch(run, k, i, j, walls):
 
 
 def stiffening(run):
-    """Work that pressing does on tangential springs up to every sample, J (M,): d(alpha) k_t slip^2 / 2.
+    """Work that pressing does on tangential springs up to every sample, J (M,): d(alpha) k_t displacement^2 / 2.
 
     Mindlin's spring k_t sqrt(R overlap) stiffens while it is held, and takes up energy that no force pays for;
     it gives it back when the two part.
     """
-    k_t, walls = run.scenario.model.sliding.k_t, run.scenario.scene.walls
+    k_t, walls = run.scenario.model.friction.k_t, run.scenario.scene.walls
     work, before, first = np.zeros(run.samples.time.size), {}, 0
     for k, size in enumerate(run.samples.row_size):
         now = {}
         for c in range(first, first + size):
             i, j = run.samples.contact_i[c], run.samples.contact_j[c]
             overlap, radius = _touch(run, k, i, j, walls)
-            now[i, j] = np.sqrt(radius * overlap), run.samples.contact_slip[c] ** 2
+            now[i, j] = np.sqrt(radius * overlap), run.samples.tangential_displacement[c] ** 2
         for pair in now.keys() & before.keys():
-            (alpha, slip), (alpha_0, slip_0) = now[pair], before[pair]
-            work[k] += 0.25 * k_t * (alpha - alpha_0) * (slip + slip_0)
+            (alpha, squared), (alpha_0, squared_0) = now[pair], before[pair]
+            work[k] += 0.25 * k_t * (alpha - alpha_0) * (squared + squared_0)
         before, first = now, first + size
     return np.cumsum(work)
+
+
+def pressed(model, integrator):
+    """A dozen persons pressed against each other, walls and the corner of two; one of them leaves and is gone."""
+    rng = np.random.default_rng(7)
+    column, row = np.divmod(np.arange(12), 4)
+    x, y = 2.72 - 0.56 * column + rng.uniform(-0.01, 0.01, 12), 0.28 + 0.56 * row
+    x[2] = 2.99
+    v, spin = rng.uniform([[0.5], [-1.0]], [[1.5], [1.0]], (2, 12)), rng.uniform(-2.0, 2.0, 12)
+    crowd = Crowd.given(x, y, *v, spin, rng.uniform(0.29, 0.32, 12), rng.uniform(60.0, 80.0, 12), v_d=3.0)
+    room, corner = square_room(3.0, 1.0, walk_on=0.005), ((1.35, 0.0, 1.35, 1.8), (1.35, 1.8, 0.5, 1.8))
+    numerics = {"dt": 7e-4, "integrator": integrator, "force_tolerance": 0.1}
+    options = Options(**numerics, time_limit=0.028, record_every=0.0035, contacts=True)
+    return Scenario(Scene((*room.walls, *corner), room.exits), crowd, model, options)

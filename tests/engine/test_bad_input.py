@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from engine import BadInput, Crowd, Exit, Model, Numerics, Record, Scenario, Scene, laws, models, rooms, simulate
+from engine import BadInput, Crowd, Exit, Model, Options, Scenario, Scene, laws, models, rooms, simulate
 
 NAN, INF = math.nan, math.inf
 AREA = (0, 15, 0, 15)
@@ -30,8 +30,8 @@ CASES = {
     "tau nan": (lambda: rooms.lin_room(tau=NAN), "drive tau nan"),
     "A negative": (lambda: rooms.lin_room(A=-300.0), "social A -300"),
     "B zero": (lambda: rooms.lin_room(B=0.0), "social B 0"),
-    "mu text": (lambda: rooms.lin_room(mu="high"), "sliding mu high"),
-    "reading unknown": (lambda: rooms.lin_room(reading="XY"), "reading 'XY'"),
+    "mu text": (lambda: rooms.lin_room(mu="high"), "friction mu high"),
+    "friction unknown": (lambda: rooms.lin_room(wall_friction="XY"), "wall_friction 'XY'"),
     "inertia unknown": (lambda: rooms.lin_room(inertia="cube"), "inertia 'cube'"),
     "exit width zero": (lambda: rooms.lin_room(L=0.0), "L 0.0"),
     "exit width nan": (lambda: rooms.lin_room(L=NAN), "L nan"),
@@ -56,14 +56,21 @@ CASES = {
     "E nan": (lambda: rooms.lin_room(E=NAN), "E nan"),
     "integrator unknown": (lambda: rooms.lin_room(integrator="euler"), "integrator 'euler'"),
     "exits of something else": (lambda: Scene((), ("abc",)), "exit 'abc' is no Exit"),
-    "stopping of something else": (lambda: replace(rooms.lin_room(), stopping=3.0), "stopping 3.0 is no Stopping"),
+    "options of something else": (lambda: replace(rooms.lin_room(), options=3.0), "options 3.0 is no Options"),
     "deep in another": (lambda: started([1.0, 1.1], [1.0, 1.0]), "somebody (such as person"),
     "centre on a wall": (lambda: started([0.0], [1.0]), "somebody (such as person 0) is"),
-    "force tolerance zero": (lambda: Numerics(force_tolerance=0.0), "force_tolerance 0"),
-    "patience infinite": (lambda: rooms.lin_room(patience=INF), "patience inf"),
-    "sampling negative": (lambda: rooms.lin_room(every=-1.0), "record every -1"),
-    "sampling between steps": (lambda: rooms.lin_room(dt=1e-3, every=1.5e-3), "record every 0.0015 s"),
-    "contacts without times": (lambda: Record(contacts=True), "record contacts"),
+    "force tolerance zero": (lambda: Options(force_tolerance=0.0), "force_tolerance 0"),
+    "blocked_after infinite": (lambda: rooms.lin_room(blocked_after=INF), "blocked_after inf"),
+    "sampling negative": (lambda: rooms.lin_room(record_every=-1.0), "record_every -1"),
+    "sampling within a step": (
+        lambda: rooms.lin_room(dt=1e-3, record_every=5e-4),
+        "record_every 0.0005 s is shorter than the time step of 0.001 s",
+    ),
+    "numerics of no paper": (
+        lambda: replace(rooms.lin_room(), paper=None).with_options(numerics="paper"),
+        "numerics 'paper' are not known for this room",
+    ),
+    "contacts without times": (lambda: Options(contacts=True), "contacts without record_every"),
     "radius nan": (lambda: Crowd.uniform(10, AREA, radius=NAN), "radius nan"),
     "radius zero": (lambda: Crowd.uniform(10, AREA, radius=(0.0, 0.3)), "radius (0.0, 0.3)"),
     "radius backwards": (lambda: Crowd.uniform(10, AREA, radius=(0.3, 0.2)), "radius (0.3, 0.2)"),
@@ -75,16 +82,16 @@ CASES = {
     "given lengths differ": (lambda: Crowd.given(**PERSON | {"mass": [70.0, 80.0]}), "mass of shape (2,)"),
     "given one place twice": (
         lambda: Crowd.given(**PERSON | {"x": [1.0, 1.0], "y": [2.0, 2.0]}),
-        "place (1.0, 2.0) is given to two persons",
+        "position (1.0, 2.0) is given to two persons",
     ),
-    "phi beyond 1": (lambda: rooms.lin_room(phi=1.5), "vision phi 1.5"),
+    "phi beyond 1": (lambda: rooms.lin_room(phi=1.5), "anisotropy phi 1.5"),
     "wall without length": (lambda: Scene(((1, 1, 1, 1),)), "wall (1.0, 1.0, 1.0, 1.0)"),
     "wall nan": (lambda: Scene(((1, 1, 1, NAN),)), "wall (1, 1, 1, nan)"),
     "exit outward along": (lambda: Exit((0, 0), (0, 1), (0, 1)), "exit outward"),
     "exit without width": (lambda: Exit((0, 0), (0, 0), (0, 1)), "exit width 0 m"),
-    "a law of the wrong kind": (lambda: models.checked(Model(drive=laws.Hertz(1e6, 0))), "drive Hertz"),
-    "a law without its end": (lambda: models.checked(Model(social=laws.Hertz(1e6, 0))), "social Hertz"),
-    "not a law": (lambda: models.checked(Model(vision=0.3)), "vision 0.3"),
+    "a law of the wrong kind": (lambda: models.validated(Model(drive=laws.Hertz(1e6, 0))), "drive Hertz"),
+    "a law without its end": (lambda: models.validated(Model(social=laws.Hertz(1e6, 0))), "social Hertz"),
+    "not a law": (lambda: models.validated(Model(anisotropy=0.3)), "anisotropy 0.3"),
 }
 
 
@@ -117,8 +124,10 @@ def _message(make):
 
 
 def test_a_scenario_survives_its_text_form():
-    scenario = rooms.lin_room(v_d=1.3, N=40, reading="W01", inertia="none", every=0.5, contacts=True)
+    variant = {"friction": "kept", "wall_friction": "kept", "wall_mu": 0.1, "inertia": "none"}
+    scenario = rooms.lin_room(v_d=1.3, N=40, record_every=0.5, contacts=True, **variant)
     again = Scenario.from_json(scenario.to_json())
-    assert again == scenario
+    assert again == scenario.with_options(**scenario.numerics._asdict())
     assert again.canonical() == scenario.canonical()
+    assert again.to_json() == scenario.to_json()
     assert rooms.lin_room(v_d=1.3 + 1e-15, N=40).canonical() != rooms.lin_room(v_d=1.3, N=40).canonical()

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from engine import Crowd, Model, Numerics, Record, Scenario, Scene, Stopping, laws, simulate
-from tests.engine.scenes import passive
+from engine import Crowd, Options, Scenario, Scene, models, simulate
+from tests.engine.scenes import PAPERS, SMOOTH, UNDRIVEN, passive
 
 HERTZ = {"k_n": 1e6, "k_t": 1e6, "g_n": 0.0, "g_t": 0.0, "mu": 0.0, "dt": 1e-5, "t_end": 0.1, "box": None}
 HEAD_ON = HERTZ | {"x": [0, 0.6], "y": [0, 0], "vx": [1, -1], "vy": [0, 0], "spin": 0.0, "radius": 0.3, "mass": 80.0}
@@ -32,21 +32,21 @@ def test_restitution_error_is_small_at_practical_steps(dt, error):
     assert np.abs(np.abs(run.samples.vx[-1]) - 1.0).max() < error
 
 
-@pytest.mark.parametrize(("inertia", "kept"), [(laws.Turning(0.4), 5 / 7), (laws.Turning(0.5), 2 / 3)])
-@pytest.mark.parametrize("sliding", [laws.Kinetic(1.0, 0.01), laws.Coulomb(1.0, 0.001)])
-def test_a_body_that_slides_along_a_wall_ends_up_rolling(inertia, kept, sliding):
+@pytest.mark.parametrize(("inertia", "kept"), [("sphere", 5 / 7), ("disc", 2 / 3)])
+@pytest.mark.parametrize("friction", ["kinetic", "coulomb"])
+def test_a_body_that_slides_along_a_wall_ends_up_rolling(inertia, kept, friction):
     """Friction without a spring turns sliding into rolling, at 5/7 of the speed for a sphere, 2/3 for a disc."""
-    model = Model(wall_normal=laws.Hertz(3.5556e6, 0.0), wall_sliding=sliding, rotation=inertia)
+    model = models.lin_dem(**UNDRIVEN | SMOOTH, wall_friction=friction, wall_mu=1.0, inertia=inertia)
     crowd = Crowd.given(x=[0.0], y=[0.31], vx=1.0, vy=-1.0, spin=0.0, radius=0.3, mass=70.0, v_d=0.0)
     floor = Scene(((-5.0, 0.0, 5.0, 0.0),))
-    run = simulate(Scenario(floor, crowd, model, Numerics(dt=1e-5), Stopping(time_limit=0.2), Record(every=0.2)))
+    run = simulate(Scenario(floor, crowd, model, Options(**PAPERS, dt=1e-5, time_limit=0.2, record_every=0.2)))
     assert run.samples.vx[-1, 0] == pytest.approx(kept, rel=1e-3)
     assert -0.3 * run.samples.spin[-1, 0] == pytest.approx(kept, rel=1e-3)
 
 
-@pytest.mark.parametrize("kind", [laws.Mindlin, laws.MindlinReset])
+@pytest.mark.parametrize("friction", ["kept", "reset"])
 @pytest.mark.parametrize("wall", [False, True])
-def test_no_collision_ends_with_more_energy_than_it_began(kind, wall):
+def test_no_collision_ends_with_more_energy_than_it_began(friction, wall):
     """From head on to grazing, spinning or not, at the paper's friction; 1e-4 allows for the step's own error."""
     rng = np.random.default_rng(4)
     for angle in np.linspace(0.0, 0.49 * np.pi, 40):
@@ -56,7 +56,7 @@ def test_no_collision_ends_with_more_energy_than_it_began(kind, wall):
         if wall:
             one = {name: case[name][:1] for name in ("x", "y", "vx", "vy", "spin", "radius", "mass")}
             case |= one | {"box": [-50.0, 0.31, -50.0, 50.0]}
-        before, after = kinetic(simulate(passive(case | {"t_end": 0.4}, dt=5e-5, every=0.4, sliding=kind)))
+        before, after = kinetic(simulate(passive(case | {"t_end": 0.4}, dt=5e-5, every=0.4, friction=friction)))
         assert after <= before * (1 + 1e-4), f"{np.degrees(angle):.0f} degrees"
 
 

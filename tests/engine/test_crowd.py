@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from engine import BadInput, Crowd, rooms, simulate
-
-NO_WALLS = np.empty((0, 5))
+from engine import BadInput, Crowd, Scene, rooms, simulate
+from engine.kernel.scene_arrays import as_arrays
+from tests.engine.scenes import NO_WALLS
 
 
 @pytest.mark.parametrize("N", [1, 100, 300, 350])
@@ -13,13 +13,13 @@ def test_nobody_overlaps_anybody_or_a_wall_at_the_start(N):
     start = Crowd.uniform(N, (0, 15, 0, 15)).draw(0, NO_WALLS)
     apart = np.hypot(start.x[:, None] - start.x, start.y[:, None] - start.y) + 9 * np.eye(N)
     assert (apart >= start.radius[:, None] + start.radius).all()
-    for place in (start.x, start.y):
-        assert ((place >= start.radius) & (place <= 15 - start.radius)).all()
+    for position in (start.x, start.y):
+        assert ((position >= start.radius) & (position <= 15 - start.radius)).all()
 
 
 def test_walls_inside_the_area_are_kept_clear():
-    wall = np.array([[0.0, 5.0, 1.0, 0.0, 10.0]])
-    start = Crowd.uniform(80, (0, 10, 0, 10)).draw(0, wall)
+    walls = as_arrays(Scene(((0.0, 5.0, 10.0, 5.0),))).walls
+    start = Crowd.uniform(80, (0, 10, 0, 10)).draw(0, walls)
     assert (np.abs(start.y - 5.0) >= start.radius * (1 - 1e-12)).all()
 
 
@@ -38,8 +38,8 @@ def test_a_crowd_that_does_not_fit_is_refused_by_number():
         rooms.lin_room(N=2000)
 
 
-def test_bodies_places_and_motion_are_independent_streams():
-    """An initial speed moves nobody's place, wider bodies have the same masses, another seed other bodies."""
+def test_bodies_positions_and_motion_are_independent_streams():
+    """An initial speed changes no position, wider bodies have the same masses, another seed other bodies."""
     few = Crowd.uniform(50, (0, 15, 0, 15)).draw(1, NO_WALLS)
     wide = Crowd.uniform(50, (0, 15, 0, 15), radius=(0.3, 0.4)).draw(1, NO_WALLS)
     assert (wide.mass == few.mass).all()

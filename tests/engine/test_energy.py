@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from engine import Crowd, Model, Numerics, Record, Scenario, Scene, Stopping, laws, simulate
-from tests.engine.scenes import energy, passive, stiffening
+from engine import Crowd, Options, Scenario, Scene, laws, models, simulate
+from engine.kernel.laws.friction import tangential_stiffness
+from tests.engine.scenes import PAPERS, UNDRIVEN, energy, passive, stiffening
 from tests.oracle import cases
 
 CROWD = cases.crowd_case()
@@ -15,12 +16,12 @@ overlaps = st.floats(LEAST, MOST)
 speeds = st.floats(-5.0, 5.0)
 
 
-@pytest.mark.parametrize("sliding", [laws.Mindlin, laws.MindlinReset])
+@pytest.mark.parametrize("friction", ["kept", "reset"])
 @pytest.mark.parametrize("damping", [0.0, 200.0])
-def test_a_passive_crowd_never_gains_energy(sliding, damping):
+def test_a_passive_crowd_never_gains_energy(friction, damping):
     """Springs counted, and the work that Mindlin's spring takes up when pressing stiffens it (Eq. 4's alpha)."""
     case = CROWD | {"g_n": damping, "g_t": damping, "t_end": 0.15}
-    run = simulate(passive(case, dt=1e-5, every=2e-5, contacts=True, sliding=sliding))
+    run = simulate(passive(case, dt=1e-5, every=2e-5, contacts=True, friction=friction))
     total = energy(run) - stiffening(run)
     assert total[-1] < 0.95 * total[0], "friction must be at work for this to test anything"
     rises = total - np.minimum.accumulate(total)
@@ -39,15 +40,15 @@ def test_without_friction_and_damping_energy_is_conserved():
     assert drifts[1] < drifts[0] / 50
 
 
-@pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
-def test_a_compressed_pair_trades_energy_as_verlet_does_in_closed_form(share):
+@pytest.mark.parametrize("fraction", [0.1, 0.5, 0.9])
+def test_a_compressed_pair_trades_energy_as_verlet_does_in_closed_form(fraction):
     """On a spring of frequency w, K + (1 - (w dt/2)^2) V is constant; the limit is 2/(sqrt(3) w)."""
     k_n, m, r, overlap = 1.2e5, 70.0, 0.3, 0.1
     w = np.sqrt(2.0 * k_n / m)
-    dt = share * 2.0 / (np.sqrt(3.0) * w)
-    model = Model(laws.Absent(), normal=laws.Hooke(k_n, 0.0))
+    dt = fraction * 2.0 / (np.sqrt(3.0) * w)
+    model = models.parisi_dorso(**UNDRIVEN, k_n=k_n, kappa=0.0, g=0.0)
     crowd = Crowd.given([0.0, 2 * r - overlap], [0.0, 0.0], 0.0, 0.0, 0.0, r, m, 0.0)
-    scenario = Scenario(Scene(), crowd, model, Numerics(dt), Stopping(time_limit=8 * dt), Record(dt))
+    scenario = Scenario(Scene(), crowd, model, Options(**PAPERS, dt=dt, time_limit=8 * dt, record_every=dt))
     samples = simulate(scenario).samples
     stored = 0.5 * k_n * np.maximum(2 * r - np.abs(samples.x[:, 1] - samples.x[:, 0]), 0.0) ** 2
     moving = 0.5 * m * (samples.vx**2).sum(axis=1)
@@ -55,7 +56,7 @@ def test_a_compressed_pair_trades_energy_as_verlet_does_in_closed_form(share):
     constant = (moving + (1.0 - (0.5 * w * dt) ** 2) * stored)[touching]
     assert touching.sum() >= 2
     np.testing.assert_allclose(constant, constant[0], rtol=1e-12)
-    assert (moving + stored)[touching].min() < (1.0 - 0.01 * share**2) * stored[0]
+    assert (moving + stored)[touching].min() < (1.0 - 0.01 * fraction**2) * stored[0]
 
 
 @settings(deadline=None)
@@ -68,15 +69,15 @@ def test_damping_never_does_positive_work(overlap, v_n, law):
 @settings(deadline=None)
 @given(speeds, st.floats(-5e3, 5e3), st.sampled_from([laws.Kinetic(0.5, 0.01), laws.Coulomb(0.5, 0.001)]))
 def test_sliding_friction_never_does_positive_work(v_t, F_n, law):
-    F_t, slip = laws.sliding(law, 0.01, 0.15, 35.0, v_t, F_n, 0.0)
+    F_t, displacement = laws.friction(law, 0.01, 0.15, 35.0, v_t, F_n, 0.0)
     assert F_t * v_t <= 0.0
     assert abs(F_t) <= 0.5 * abs(F_n)
-    assert slip == 0.0
+    assert displacement == 0.0
 
 
 @settings(deadline=None)
 @given(overlaps, speeds, st.floats(-1.0, 1.0), st.floats(1e-6, 1e-3), st.sampled_from(["Mindlin", "MindlinReset"]))
-def test_a_tangential_spring_gives_back_no_more_than_it_took(overlap, v_t, share, dt, kind):
+def test_a_tangential_spring_gives_back_no_more_than_it_took(overlap, v_t, fraction, dt, kind):
     """Over one step at constant overlap: work of the force and change of the spring's energy.
 
     The spring that is kept at the limit is tried without its damper: a damper that alone exceeds the limit
@@ -84,9 +85,9 @@ def test_a_tangential_spring_gives_back_no_more_than_it_took(overlap, v_t, share
     """
     law = getattr(laws, kind)(4.5e6, 0.0 if kind == "Mindlin" else 300.0, 0.5)
     F_n = laws.normal(laws.Hertz(3.5e6, 0.0), overlap, 0.15, 35.0, 0.0)
-    stiffness = laws.sliding_stiffness(law, overlap, 0.15)
-    slip = share * 0.5 * F_n / stiffness
-    F_t, after = laws.sliding(law, overlap, 0.15, 35.0, v_t, F_n, slip + v_t * dt)
-    gained = 0.5 * stiffness * (after**2 - slip**2) + F_t * v_t * dt
-    assert gained <= 1e-9 * (1.0 + 0.5 * stiffness * slip**2)
+    stiffness = tangential_stiffness(law, overlap, 0.15)
+    before = fraction * 0.5 * F_n / stiffness
+    F_t, after = laws.friction(law, overlap, 0.15, 35.0, v_t, F_n, before + v_t * dt)
+    gained = 0.5 * stiffness * (after**2 - before**2) + F_t * v_t * dt
+    assert gained <= 1e-9 * (1.0 + 0.5 * stiffness * before**2)
     assert abs(F_t) <= 0.5 * F_n * (1 + 1e-12)

@@ -1,6 +1,6 @@
 """What must hold in any small scene, and what must not matter to it.
 
-All scenes have the types of the default reading, in two integrators, so that their numbers vary and no kernel more
+All scenes have the types of the default variant, in two integrators, so that their numbers vary and no kernel more
 is compiled. `make stress` runs ten thousand larger ones of all models.
 """
 
@@ -12,10 +12,11 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from engine import BadInput, Crowd, Exit, Numerics, Record, Scenario, Scene, Stopping, models, simulate
+from engine import BadInput, Crowd, Exit, Options, Scenario, Scene, models, simulate
 from engine.scenario import step_limit
 from studies.stress import energy, kinds
 from studies.stress.checks import check
+from tests.engine.scenes import NO_WALLS, PAPERS
 
 LIN = models.lin_dem()
 SIZE = 4.0  # m
@@ -32,7 +33,7 @@ inner_walls = st.lists(
 
 @st.composite
 def lin_models(draw):
-    """The default reading with other stiffness, damping, friction and social force."""
+    """The default variant with other stiffness, damping, friction and social force."""
     model = kinds.scaled(LIN, kinds.STIFFNESSES, 10.0 ** draw(st.floats(-0.5, 1.0)))
     model = kinds.scaled(model, kinds.DAMPINGS, 10.0 ** draw(st.floats(-1.0, 3.0)))
     return kinds.with_values(model, {"A": draw(st.floats(0.0, 500.0)), "mu": draw(st.floats(0.0, 1.5))})
@@ -74,12 +75,12 @@ def room(open_sides=(), inside=(), width=1.0):
     return Scene(tuple(walls), tuple(exits))
 
 
-def scenario(scene, crowd, model, integrator, share=0.5, steps=300, every=1, seed=0, dt=None):
-    """A scenario at a share of the longest step; contacts are sampled where every step is."""
-    first = Scenario(scene, crowd, model, Numerics(dt=1e-7, integrator=integrator), Stopping(time_limit=1.0))
-    dt = dt or share * step_limit(first)[0]
-    numerics, stopping = Numerics(dt=dt, integrator=integrator), Stopping(time_limit=steps * dt)
-    return Scenario(scene, crowd, model, numerics, stopping, Record(every * dt, every == 1), seed)
+def scenario(scene, crowd, model, integrator, fraction=0.5, steps=300, every=1, seed=0, dt=None):
+    """A scenario at a fraction of the longest step; contacts are sampled where every step is."""
+    options = Options(**PAPERS | {"integrator": integrator}, dt=1e-7, time_limit=1.0)
+    first = Scenario(scene, crowd, model, options, seed)
+    dt = dt or fraction * step_limit(first)[0]
+    return first.with_options(dt=dt, time_limit=steps * dt, record_every=every * dt, contacts=every == 1)
 
 
 def run_of(tried):
@@ -93,9 +94,9 @@ def run_of(tried):
 @any_scene
 @given(doors, inner_walls, crowds(), lin_models(), integrators, st.floats(0.1, 0.9), seeds)
 def test_nobody_goes_through_walls_or_others_and_everything_is_finite(
-    open_sides, inside, crowd, model, integrator, share, seed
+    open_sides, inside, crowd, model, integrator, fraction, seed
 ):
-    run = run_of(scenario(room(open_sides, inside), crowd, model, integrator, share, 1500, 5, seed))
+    run = run_of(scenario(room(open_sides, inside), crowd, model, integrator, fraction, 1500, 5, seed))
     assert run.outcome in ("all_out", "time_limit")
     assert check(run, step_limit(run.scenario)[0]).violations == []
 
@@ -109,23 +110,23 @@ def test_nobody_goes_through_walls_or_others_and_everything_is_finite(
     integrators,
     st.floats(0.02, 0.5),
 )
-def test_who_is_thrown_is_stopped_or_ends_the_run_as_unstable(speed, beside, target, model, integrator, share):
+def test_who_is_thrown_is_stopped_or_ends_the_run_as_unstable(speed, beside, target, model, integrator, fraction):
     walls = {"wall": ((2.0, -9.0, 2.0, 9.0),), "wall's end": ((2.0, 1.0, 2.0, -9.0),), "person": ()}
     scene = Scene(walls.get(target, ((2.3, -9.0, 2.3, 9.0),)))
     others = ([2.0], [1.0 + beside]) if "person" in target else ([], [])
     crowd = Crowd.given(
         [1.0, *others[0]], [1.0, *others[1]], [speed, *[0.0] * len(others[0])], 0.0, 0.0, 0.3, 70.0, 0.0
     )
-    run = simulate(scenario(scene, crowd, kinds.passive(model), integrator, share, 400))
+    run = simulate(scenario(scene, crowd, kinds.passive(model), integrator, fraction, 400))
     assert check(run, step_limit(run.scenario)[0]).violations == []
 
 
 @any_scene
 @given(st.booleans(), crowds(), lin_models(), integrators, st.floats(0.1, 0.9), seeds)
-def test_undriven_crowds_gain_no_energy(walled, crowd, model, integrator, share, seed):
+def test_undriven_crowds_gain_no_energy(walled, crowd, model, integrator, fraction, seed):
     """In a closed room or in the open, with friction and damping; springs counted."""
     scene = room() if walled else Scene()
-    run = run_of(scenario(scene, crowd, kinds.passive(model), integrator, share, seed=seed))
+    run = run_of(scenario(scene, crowd, kinds.passive(model), integrator, fraction, seed=seed))
     assert check(run, step_limit(run.scenario)[0]).violations == []
 
 
@@ -134,8 +135,8 @@ def test_undriven_crowds_gain_no_energy(walled, crowd, model, integrator, share,
 def test_what_is_lost_without_friction_falls_with_the_square_of_the_step(walled, crowd, model, integrator, seed):
     scene = room() if walled else Scene()
     errors = []
-    for share, steps in ((0.2, 200), (0.05, 800)):
-        run = run_of(scenario(scene, crowd, kinds.lossless(model), integrator, share, steps, seed=seed))
+    for fraction, steps in ((0.2, 200), (0.05, 800)):
+        run = run_of(scenario(scene, crowd, kinds.lossless(model), integrator, fraction, steps, seed=seed))
         total = energy.ledger(run).total
         assume(total[0] > 1.0)
         errors.append(np.abs(total - total[0]).max() / total[0])
@@ -161,7 +162,7 @@ def given_crowd(start, *more):
 @given(doors, crowds(), lin_models(), integrators, seeds)
 def test_a_person_far_away_changes_nothing(open_sides, crowd, model, integrator, seed):
     """Up to rounding: the order of pairs may be another."""
-    start = crowd.draw(seed, np.empty((0, 5)))
+    start = crowd.draw(seed, NO_WALLS)
     alone = scenario(room(open_sides), given_crowd(start), model, integrator, 0.1, 400, 5)
     far = (SIZE / 2, -80.0, 0.0, 0.0, 0.0, crowd.radius[0], crowd.mass[1], 0.0)
     run = run_of(alone)
@@ -182,11 +183,13 @@ def test_a_wall_far_away_changes_not_one_bit(open_sides, crowd, model, integrato
 
 
 @any_scene
-@given(doors, inner_walls, crowds(), lin_models(), integrators, st.integers(2, 50), seeds)
+@given(doors, inner_walls, crowds(), lin_models(), integrators, st.floats(1.0, 50.0), seeds)
 def test_sampling_changes_not_one_bit(open_sides, inside, crowd, model, integrator, stride, seed):
+    """Not even at intervals that are no multiple of the step, where samples stand at the nearest steps."""
     finest = scenario(room(open_sides, inside), crowd, model, integrator, 0.5, 300, 1, seed)
-    coarse = replace(finest, record=Record(stride * finest.numerics.dt))
-    runs = [run_of(tried) for tried in (finest, coarse, replace(finest, record=Record()))]
+    dt = finest.numerics.dt
+    coarse, none = (finest.with_options(record_every=every, contacts=False) for every in (stride * dt, 0.0))
+    runs = [run_of(tried) for tried in (finest, coarse, none)]
     for run in runs[1:]:
         assert run.exit_time.tobytes() == runs[0].exit_time.tobytes()
         assert (run.end_time, run.max_overlap, run.max_speed) == (
@@ -194,8 +197,12 @@ def test_sampling_changes_not_one_bit(open_sides, inside, crowd, model, integrat
             runs[0].max_overlap,
             runs[0].max_speed,
         )
-    for mine, theirs in ((runs[0].samples.x, runs[1].samples.x), (runs[0].samples.vy, runs[1].samples.vy)):
-        assert np.array_equal(mine[::stride], theirs, equal_nan=True)
+    fine, few = runs[0].samples, runs[1].samples
+    step = np.round(few.time / dt).astype(int)
+    assert np.abs(step - stride * np.arange(step.size)).max() <= 0.5 + 1e-9
+    for name in ("time", "x", "vy"):
+        assert np.array_equal(getattr(fine, name)[step], getattr(few, name), equal_nan=True)
+    assert runs[2].samples is None
 
 
 @any_scene

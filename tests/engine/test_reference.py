@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from engine import Crowd, Numerics, Record, Scenario, Stopping, models, simulate
+from engine import Crowd, Options, Scenario, models, simulate
 from engine.rooms import square_room
 from tests.engine.reference import Reference
 
 
-def crush(reading, N=24, dt=2e-4, t_end=0.5, size=6.0):
+def crush(friction=None, N=24, dt=2e-4, t_end=0.5, size=6.0, **options):
     """A crowd pressed against the exit wall and into the corner, so that persons and walls touch."""
     rng = np.random.default_rng(7)
     column, row = np.divmod(np.arange(N), 4)
@@ -23,14 +23,17 @@ def crush(reading, N=24, dt=2e-4, t_end=0.5, size=6.0):
         mass=rng.uniform(60, 80, N),
         v_d=3.0,
     )
-    numerics = Numerics(dt=dt, force_tolerance=1e-12)
-    stop = Stopping(time_limit=t_end)
-    return Scenario(square_room(size, 1.0), crowd, models.lin_dem(reading), numerics, stop, Record(every=0.01))
+    numerics = {"dt": dt, "force_tolerance": 1e-12, "integrator": "velocity_verlet"}
+    run = Options(**numerics, time_limit=t_end, record_every=0.01, **options)
+    return Scenario(square_room(size, 1.0), crowd, models.lin_dem(**friction or {}), run)
 
 
-@pytest.mark.parametrize("reading", ["RK", "W", "WR"])
-def test_the_kernel_computes_what_plain_numpy_computes(reading):
-    scenario = crush(reading)
+KEPT = {"friction": "kept", "wall_friction": "kept"}
+
+
+@pytest.mark.parametrize("friction", [{}, KEPT, {"wall_friction": "reset"}], ids=["default", "kept", "reset"])
+def test_the_kernel_computes_what_plain_numpy_computes(friction):
+    scenario = crush(friction)
     run, reference = simulate(scenario), Reference(scenario)
     stays = np.setdiff1d(np.arange(run.N), run.exit_person)
     assert run.max_overlap > 0.01, "the crowd must be pressed for this to test anything"
@@ -48,15 +51,7 @@ def test_the_kernel_computes_what_plain_numpy_computes(reading):
 @pytest.mark.parametrize("skin", [0.01, 0.4])
 def test_the_skin_changes_speed_and_not_the_run(skin):
     """Lists of 0.01 m skin are rebuilt at nearly every move, those of 0.4 m hardly ever."""
-    scenario = crush("RK")
-    other = Scenario(
-        scenario.scene,
-        scenario.crowd,
-        scenario.model,
-        Numerics(dt=2e-4, force_tolerance=1e-12, skin=skin),
-        scenario.stopping,
-        scenario.record,
-    )
+    scenario, other = crush(), crush(skin=skin)
     mine, theirs = simulate(scenario), simulate(other)
     assert mine.rebuilds != theirs.rebuilds
     assert theirs.samples.x[:12] == pytest.approx(mine.samples.x[:12], abs=1e-9, nan_ok=True)
@@ -64,7 +59,7 @@ def test_the_skin_changes_speed_and_not_the_run(skin):
 
 def test_more_pairs_than_a_block_holds_are_all_computed():
     """120 persons have more than two blocks of 512 pairs in reach of each other."""
-    scenario = crush("W", N=120, t_end=0.05, size=20.0)
+    scenario = crush(KEPT, N=120, t_end=0.05, size=20.0)
     reference = Reference(scenario)
     run = simulate(scenario)
     for _ in range(round(run.samples.time[-1] / scenario.numerics.dt)):

@@ -5,25 +5,25 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine import Crowd, Exit, Numerics, Record, Scenario, Scene, Stopping, laws, models, simulate
+from engine import Crowd, Exit, Options, Scenario, Scene, models, simulate
 from engine.rooms import square_room
+from tests.engine.scenes import NO_WALLS, PAPERS
 
 N, SIZE = 30, 6.0
 
 
-def scenario(scene=None, order=None, turn=None, model=None):
+def scenario(scene=None, order=None, turn=None):
     """A crowd in a small room, its plane turned (2 x 2 matrix) and its persons renumbered.
 
-    At dt = 1e-4 s: at 1e-3 s the wall friction of reading RK chatters and amplifies rounding.
+    At dt = 1e-4 s: at 1e-3 s kinetic friction at walls chatters and amplifies rounding.
     """
     turn, order = np.eye(2) if turn is None else turn, np.arange(N) if order is None else order
-    start = Crowd.uniform(N, (0, SIZE, 0, SIZE), v_d=2.0).draw(3, np.empty((0, 5)))
+    start = Crowd.uniform(N, (0, SIZE, 0, SIZE), v_d=2.0).draw(3, NO_WALLS)
     x, y = turn @ np.stack([start.x, start.y])[:, order]
     persons = {name: getattr(start, name)[order] for name in ("radius", "mass")}
     crowd = Crowd.given(x, y, vx=0.0, vy=0.0, spin=0.0, v_d=2.0, **persons)
     scene = turned(scene or square_room(SIZE, 1.0), turn)
-    model = model or models.lin_dem()
-    return Scenario(scene, crowd, model, Numerics(dt=1e-4), Stopping(time_limit=3.0), Record(every=0.5))
+    return Scenario(scene, crowd, models.lin_dem(), Options(**PAPERS, dt=1e-4, time_limit=3.0, record_every=0.5))
 
 
 def turned(scene, turn):
@@ -81,27 +81,27 @@ def test_a_corner_of_two_walls_pushes_once():
     """A person in front of the edge of a pillar feels the edge once, although two walls end there."""
     edge = Scene(((2.0, 1.0, 1.0, 1.0), (1.0, 1.0, 1.0, 2.0)))
     tip = Scene(((1.0, 1.0, 2.0, 2.0),))
-    model = models.lin_dem()._replace(drive=laws.Absent())
+    model = models.lin_dem(tau=1e30)
     crowd = Crowd.given([0.8], [0.8], 0.0, 0.0, 0.0, 0.3, 70.0, 1.0)
-    numbers = Numerics(dt=1e-4), Stopping(time_limit=0.2), Record(every=0.05)
-    at_edge, at_tip = (simulate(Scenario(scene, crowd, model, *numbers)) for scene in (edge, tip))
+    options = Options(**PAPERS, dt=1e-4, time_limit=0.2, record_every=0.05)
+    at_edge, at_tip = (simulate(Scenario(scene, crowd, model, options)) for scene in (edge, tip))
     assert at_edge.samples.x == pytest.approx(at_tip.samples.x, abs=1e-12)
     assert at_edge.samples.x[-1] < 0.75
 
 
 def test_a_wall_that_ends_on_another_does_not_push_those_behind_it():
     """The foot of a partition, felt from the other side of the wall that it stands on."""
-    model = models.lin_dem()._replace(drive=laws.Absent())
+    model = models.lin_dem(tau=1e30)
     crowd = Crowd.given([2.0], [-0.35], 0.0, 0.0, 0.0, 0.3, 70.0, 1.0)
     wall, partition = (0.0, 0.0, 4.0, 0.0), (2.0, 0.0, 2.0, 3.0)
-    numbers = Numerics(dt=1e-4), Stopping(time_limit=0.2), Record(every=0.05)
-    plain, foot = (simulate(Scenario(Scene(w), crowd, model, *numbers)) for w in ((wall,), (wall, partition)))
+    options = Options(**PAPERS, dt=1e-4, time_limit=0.2, record_every=0.05)
+    plain, foot = (simulate(Scenario(Scene(w), crowd, model, options)) for w in ((wall,), (wall, partition)))
     assert plain.samples.y[-1] < -0.36
     assert foot.samples.y == pytest.approx(plain.samples.y, abs=1e-12)
 
 
 def test_isotropic_forces_between_persons_sum_to_zero():
-    model = models.lin_dem()._replace(drive=laws.Absent(), vision=laws.Absent())
+    model = models.lin_dem(tau=1e30, phi=0.0)
     run = simulate(replace(scenario(), scene=Scene(), model=model))
     assert run.max_speed > 0.01
     momentum = run.start.mass @ run.samples.vx.T, run.start.mass @ run.samples.vy.T
@@ -110,8 +110,8 @@ def test_isotropic_forces_between_persons_sum_to_zero():
 
 def test_anisotropic_forces_do_not_sum_to_zero():
     """Lin's social force is not reciprocal: who sees the other is pushed more."""
-    model = models.lin_dem()._replace(drive=laws.Absent())
-    run = simulate(replace(scenario(), model=model, stopping=Stopping(time_limit=0.5)))
+    model = models.lin_dem(tau=1e30)
+    run = simulate(replace(scenario(), model=model).with_options(time_limit=0.5))
     assert abs(run.start.mass @ run.samples.vx[-1]) > 1.0
 
 

@@ -24,7 +24,7 @@ def jamsweep(*arguments: object) -> int:
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("runs") / "run.nc"
-    write_run(simulate(rooms.lin_room(v_d=2.0, every=0.1, contacts=True, **SMALL)), path)
+    write_run(simulate(rooms.lin_room(v_d=2.0, record_every=0.1, contacts=True, **SMALL)), path)
     return path
 
 
@@ -102,7 +102,7 @@ def test_what_cannot_be_exported_is_one_line(
         (run, "nowhere/run.txt", "exits", "output folder"),
         (tmp_path / "none.nc", "run.txt", "exits", "none.nc' does not exist"),
         (broken, "run.txt", "exits", "cannot be read: it is damaged, or none of a run"),
-        (plain, "run.txt", "exits", "has no trajectories: record it with every=0.1 (in a shell: --every 0.1)"),
+        (plain, "run.txt", "exits", "has no trajectories: record it with every=0.1 (in a shell: --record-every 0.1)"),
         (plain, "f.csv", "forces-on-persons", "does not tell its contact forces"),
         (store, "run.txt", "exits", "holds many runs, of which this export takes one"),
         (store, "f.csv", "forces-on-walls", "holds many runs"),

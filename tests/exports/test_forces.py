@@ -1,20 +1,19 @@
 """Contact forces against closed forms: whoever stands still is held by what drives it."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from engine import BadInput, Crowd, Exit, Model, Numerics, Record, Scenario, Scene, Stopping, laws, models, simulate
+from engine import BadInput, Crowd, Exit, Model, Scenario, Scene, laws, models, simulate
 from sweep import to_dataset
 from sweep.exports import forces_on_persons, forces_on_walls
 
 MASS, RADIUS, TAU = 80.0, 0.3, 0.5
 WALL = (1.0, -2.0, 1.0, 2.0)  # in the way to the exit
 EXIT = Exit((2.0, -1.0), (2.0, 1.0), (1.0, 0.0))
-NO_SOCIAL = models.lin_dem(reading="B", A=0.0)
+NO_SOCIAL = models.lin_dem(A=0.0, friction="kept", wall_friction="kept", wall_social=False)
 
 
 def pressed(model: Model, v_d: float, persons: int = 1, walls: tuple = (WALL,), **record: object) -> xr.Dataset:
@@ -25,9 +24,17 @@ def pressed(model: Model, v_d: float, persons: int = 1, walls: tuple = (WALL,), 
         Scene(walls, (EXIT,)),
         crowd,
         model,
-        Numerics(dt=5e-4, integrator="velocity_verlet"),
-        Stopping(time_limit=20.0, at_rest=False),
-        replace(Record(every=0.5, contacts=True), **record),
+        Options(
+            **{
+                "dt": 5e-4,
+                "integrator": "velocity_verlet",
+                "time_limit": 20.0,
+                "stop_at_rest": False,
+                "record_every": 0.5,
+                "contacts": True,
+            }
+            | record
+        ),
     )
     return to_dataset(simulate(scenario))
 
@@ -70,7 +77,7 @@ def test_the_point_where_two_walls_meet_acts_once() -> None:
 
 
 def test_friction_is_as_large_as_the_law_says() -> None:
-    model = models.lin_dem(reading="RK", A=0.0)
+    model = models.lin_dem(A=0.0)
     run = pressed(model, v_d=2.0)
     slow = run.assign(vy=run.vy * 0 + 1.0, spin=run.spin * 0)  # as if sliding along the wall, far above v_0 = 0.01 m/s
     on_wall = forces_on_walls(slow).isel(sample=-1)
@@ -78,8 +85,8 @@ def test_friction_is_as_large_as_the_law_says() -> None:
 
 
 def test_a_run_that_does_not_tell_is_refused() -> None:
-    run = pressed(NO_SOCIAL, v_d=1.0, state="places")
-    with pytest.raises(BadInput, match=r'does not tell its contact forces: record it with .*state="whole"'):
+    run = pressed(NO_SOCIAL, v_d=1.0, record="positions")
+    with pytest.raises(BadInput, match=r'does not tell its contact forces: record it with .*record="full"'):
         forces_on_persons(run)
     whole = pressed(NO_SOCIAL, v_d=1.0)
     with pytest.raises(BadInput, match="without its scenario"):

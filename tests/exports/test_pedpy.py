@@ -57,7 +57,7 @@ def run(request: pytest.FixtureRequest) -> xr.Dataset:
     sampled = {"N": 30, "size": 6.0, "every": 0.04, "time_limit": 200.0}
     if request.param == "lin":
         return to_dataset(simulate(rooms.lin_room(v_d=1.2, **sampled)))
-    return to_dataset(simulate(rooms.parisi_room(v_d=2.0, state="places", **sampled)))
+    return to_dataset(simulate(rooms.parisi_room(v_d=2.0, record="positions", **sampled)))
 
 
 @pytest.mark.parametrize("name", WALKS)

@@ -31,7 +31,7 @@ def walking_on() -> xr.Dataset:
 @pytest.fixture(scope="session")
 def walk() -> xr.Dataset:
     """Twelve persons who all get out; places alone, no contacts."""
-    return to_dataset(simulate(rooms.lin_room(v_d=1.0, N=12, seed=1, size=5.0, every=0.1, state="places")))
+    return to_dataset(simulate(rooms.lin_room(v_d=1.0, N=12, seed=1, size=5.0, record_every=0.1, record="positions")))
 
 
 @pytest.fixture(scope="module")

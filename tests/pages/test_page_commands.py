@@ -36,7 +36,7 @@ def refused(capsys: pytest.CaptureFixture, *arguments: object) -> str:
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
     path = tmp_path / "run.nc"
-    write_run(simulate(rooms.lin_room(every=0.1, contacts=True, state="places", **SMALL)), path)
+    write_run(simulate(rooms.lin_room(record_every=0.1, contacts=True, record="positions", **SMALL)), path)
     return path
 
 
@@ -53,12 +53,12 @@ def test_view_refuses_what_it_cannot_play(file: Path, tmp_path: Path, capsys: py
     whole = file.read_bytes()
     cut.write_bytes(whole[: len(whole) // 2])
     words.write_text("no run")
-    assert "has no samples to play: run it again with `--every 0.1`" in refused(capsys, "view", bare)
+    assert "has no samples to play: run it again with `--record-every 0.1`" in refused(capsys, "view", bare)
     for path in (cut, words):
         assert f"run file '{path}' cannot be read: it is damaged, or none of a run" in refused(capsys, "view", path)
     assert "does not exist" in refused(capsys, "view", tmp_path / "none.nc")
     assert "is a folder: name a run file, such as one of those in " in refused(capsys, "view", tmp_path)
-    assert "every 0 is not a whole number above 0" in refused(capsys, "view", file, "--every", 0)
+    assert "every 0 is not a whole number above 0" in refused(capsys, "view", file, "--record-every", 0)
     assert "output folder" in refused(capsys, "view", file, "-o", tmp_path / "no" / "run.html")
     assert not list(tmp_path.glob("*.html"))
 

@@ -57,7 +57,7 @@ def test_what_a_file_says_of_itself_is_text_and_no_tag(walk: xr.Dataset) -> None
 
 def test_contacts_found_from_places_are_those_the_engine_recorded(jam: xr.Dataset) -> None:
     """Places of the whole state are stored as float32: who touches by less than a micrometre may differ."""
-    without = jam.drop_vars(["row_size", "contact_i", "contact_j", "contact_slip"])
+    without = jam.drop_vars(["row_size", "contact_i", "contact_j", "tangential_displacement"])
     recorded, found = contacts_of(jam), contacts_of(without)
     assert (recorded.recorded, found.recorded) == (True, False)
 
@@ -127,5 +127,5 @@ def test_a_scale_ends_at_a_round_number_above_nearly_all() -> None:
 
 def test_a_run_without_samples_says_how_to_record() -> None:
     run = to_dataset(simulate(rooms.lin_room(N=3, size=4.0, time_limit=1.0)))
-    with pytest.raises(BadInput, match=r"has no samples to play: run it again with `--every 0\.1`"):
+    with pytest.raises(BadInput, match=r"has no samples to play: run it again with `--record-every 0\.1`"):
         player_page(run)

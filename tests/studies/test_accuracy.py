@@ -8,9 +8,9 @@ import xarray as xr
 
 from engine import OUTCOMES, rooms, simulate
 from studies import accuracy
-from studies.precision import bias, cells, clock, conservation, page, places, plans, savings, settings
+from studies.precision import bias, cells, clock, conservation, page, plans, positions, savings, settings
 from studies.precision.front import pareto
-from studies.precision.places import Case
+from studies.precision.positions import Case
 from studies.precision.settings import Setting
 
 RNG = np.random.default_rng(7)
@@ -144,7 +144,7 @@ def test_nothing_to_divide_by_is_undefined_and_not_shown():
 def test_errors_fall_with_the_step_and_the_skin_changes_nothing():
     case = Case("lin_room", 1.0, 0.2, Setting("semi_implicit", 5e-4, 1e-6), (), N=20)
     coarse, fine = Setting("semi_implicit", 4e-3, 1e-6), Setting("semi_implicit", 1e-3, 1e-6)
-    errors = places.errors_of(case, 0, [coarse, fine, coarse._replace(skin=0.06), coarse._replace(force_tolerance=3.0)])
+    errors = positions.errors_of(case, 0, [coarse, fine, coarse._replace(skin=0.06), coarse._replace(force_tolerance=3.0)])
     assert 0.0 < errors[fine] < errors[coarse]
     assert errors[coarse._replace(skin=0.06)] == pytest.approx(errors[coarse], rel=1e-6)
     assert errors[coarse._replace(force_tolerance=3.0)] > 2.0 * errors[coarse]
@@ -181,7 +181,7 @@ def test_more_seeds_are_more_in_every_trial():
 def test_the_chosen_settings_are_those_of_the_rooms():
     for name, room in rooms.ROOMS.items():
         chosen = settings.chosen(name)
-        assert chosen["2%"] == settings.setting_of(room().numerics)
+        assert chosen["2%"] == settings.setting_of(room())
         assert chosen["paper"].integrator == "velocity_verlet"
 
 
@@ -222,7 +222,7 @@ def results(tmp_path_factory):
 
 def test_a_small_study_tells_all_its_parts(results, tmp_path):
     text = page.tables(results)
-    for part in ("Chosen levels", "Error of the places", "Energy", "Bias of the statistics", "What skipping saves"):
+    for part in ("Chosen levels", "Error of the positions", "Energy", "Bias of the statistics", "What skipping saves"):
         assert f"## {part}" in text
     assert "Refused, beyond the longest step: semi_implicit at 0.01 s" in text
     assert "refused: dt 0.01 s is beyond" in text

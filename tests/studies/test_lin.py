@@ -72,7 +72,7 @@ def test_leaving_times_as_published_reproduce_figure_4_and_others_do_not():
 
 
 def rotation(times, blocked):
-    coords = {"v_d": [1.0, 2.0], "inertia": list(sweeps.TURNING)}
+    coords = {"v_d": [1.0, 2.0], "inertia": list(sweeps.ROTATION)}
     return over(coords, *leaving(times, blocked, seeds=40))
 
 
@@ -299,7 +299,7 @@ def tiny(monkeypatch):
         return {
             "speeds": Grid(rooms.lin_room, v_d=[0.6, 1.0, 1.4, 2.0], N=[100, 200, 300], seed=[0], time_limit=2.0),
             "strengths": Grid(sweeps.strength_room, A=list(paper.FIG4_A), walls=sweeps.WALLS, seed=[0]),
-            "rotation": Grid(rooms.lin_room, v_d=[1.0, 2.0], inertia=sweeps.TURNING, seed=range(2), **small),
+            "rotation": Grid(rooms.lin_room, v_d=[1.0, 2.0], inertia=sweeps.ROTATION, seed=range(2), **small),
             "snapshots": Grid(rooms.lin_room, seed=[0], v_d=1.0, **small, **recorded),
         }
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from engine import Crowd, Record, Scenario, Scene, Stopping, scenario, simulate
+from engine import Crowd, Options, Scenario, Scene, scenario, simulate
 from engine.scenario import step_limit
 from studies.stress import __main__ as command
 from studies.stress import energy, families, judge, kinds, tasks
@@ -17,7 +17,7 @@ from studies.stress.judge import Case
 from studies.stress.random_scenes import RandomScenes, at_share, random_scenario
 from studies.stress.workers import Crashed, Hung, answers
 
-KIND = ("lin_dem RK", "velocity_verlet")
+KIND = ("lin_dem (reset, kinetic)", "velocity_verlet")
 PASSIVE = kinds.passive(kinds.MODELS[KIND[0]])
 BOX = Scene.box(4.0, 4.0)
 
@@ -35,7 +35,7 @@ def judged(run):
 def altered(run, **arrays):
     """The run with some of its samples changed by functions of an array (M, N)."""
     changed = {name: change(getattr(run.samples, name).copy()) for name, change in arrays.items()}
-    return replace(run, samples=replace(run.samples, **changed))
+    return replace(run, samples=run.samples._replace(**changed))
 
 
 def at_the_end(value):
@@ -101,15 +101,9 @@ def test_a_step_far_beyond_the_limit_is_cut_instead_of_heating_the_crowd(monkeyp
     run = simulate(colliding(model=kinds.lossless(PASSIVE)))
     dt = 4.0 * step_limit(run.scenario)[0]
     monkeypatch.setattr(scenario, "step_limit", lambda tried: (math.inf, ""))
-    beyond = replace(
-        run.scenario,
-        numerics=replace(run.scenario.numerics, dt=dt),
-        record=Record(dt, contacts=True),
-        stopping=Stopping(),
-    )
-    cut = simulate(replace(beyond, stopping=Stopping(time_limit=40 * dt)))
+    cut = simulate(run.scenario, dt=dt, record_every=dt, contacts=True, time_limit=40 * dt)
     assert cut.outcome == "time_limit"
-    assert cut.cuts > 0
+    assert cut.substepped_steps > 0
     assert check(cut, dt).violations == []
     heated = altered(cut, vx=lambda vx: vx * np.linspace(1.0, 2.0, len(vx))[:, None])
     assert any("energy" in line for line in check(heated, dt).violations)
@@ -146,7 +140,7 @@ def test_running_what_should_be_refused_and_another_outcome_than_wanted_are_said
 def test_an_unstable_run_is_noted_with_its_cause():
     def too_soft():
         crowd = Crowd.given([1.0], [2.0], 50.0, 0.0, 0.0, 0.3, 70.0, 0.0)
-        return Scenario(BOX, crowd, PASSIVE, stopping=Stopping(time_limit=0.1))
+        return Scenario(BOX, crowd, PASSIVE, Options(time_limit=0.1))
 
     assert judge.judge(Case(KIND, "", too_soft)).note.endswith(judge.SOFT)
 

@@ -72,7 +72,7 @@ def test_a_killed_dask_worker_costs_no_run(tmp_path: Path) -> None:
 
 
 def test_a_time_out_ends_a_run_on_a_dask_worker_too(tmp_path: Path, two_machines: Any) -> None:
-    grid = Grid("lin_room", time_limit=[0.1, 1e6], N=5, size=4.0, v_d=0.001, dt=1e-5, patience=1e6)
+    grid = Grid("lin_room", time_limit=[0.1, 1e6], N=5, size=4.0, v_d=0.001, dt=1e-5, blocked_after=1e6)
     ds = sweep(grid, tmp_path / "d", scheduler=two_machines.scheduler_address, timeout=2.0)
     assert ds.outcome.values.tolist()[1] == 0
     assert ds.outcome.values.tolist()[0] > 0

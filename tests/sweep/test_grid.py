@@ -27,7 +27,7 @@ def test_a_point_makes_the_scenario_the_room_would_make() -> None:
 
 
 def test_whole_numbers_and_floats_ask_for_the_same_run() -> None:
-    keys = [run_key(Grid("lin_room", patience=value).scenario({})) for value in (120, 120.0, np.float64(120))]
+    keys = [run_key(Grid("lin_room", blocked_after=value).scenario({})) for value in (120, 120.0, np.float64(120))]
     assert len(set(keys)) == 1
 
 

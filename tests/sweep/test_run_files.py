@@ -14,7 +14,7 @@ from sweep.schema import SCHEMA_VERSION, run_key
 
 @pytest.fixture(scope="module")
 def run() -> Run:
-    return simulate(rooms.lin_room(N=12, size=4.0, v_d=1.4, time_limit=4.0, every=0.5, contacts=True))
+    return simulate(rooms.lin_room(N=12, size=4.0, v_d=1.4, time_limit=4.0, record_every=0.5, contacts=True))
 
 
 @pytest.fixture(scope="module")
@@ -80,7 +80,7 @@ def test_a_run_without_exits_and_without_samples_is_stored_too(tmp_path: Path) -
 
 
 def test_samples_without_contacts_have_no_contact_variables(tmp_path: Path) -> None:
-    ds = to_dataset(simulate(rooms.lin_room(N=3, size=4.0, time_limit=0.1, every=0.05)))
+    ds = to_dataset(simulate(rooms.lin_room(N=3, size=4.0, time_limit=0.1, record_every=0.05)))
     assert ds.x.dims == ("sample", "person")
     assert ds.x.dtype == np.float32
     assert not {"row_size", "contact_i"} & set(ds.variables)

@@ -145,7 +145,7 @@ def test_a_worker_in_a_compiled_loop_notices_that_its_parent_is_gone(platform: s
         "from engine import rooms, simulate\n"
         f"sys.platform = '{platform}'; end_with(os.getppid())\n"
         "print(os.getpid(), flush=True)\n"
-        "simulate(rooms.lin_room(N=5, size=4.0, v_d=0.001, patience=1e6, time_limit=1e6, dt=1e-5))\n"
+        "simulate(rooms.lin_room(N=5, size=4.0, v_d=0.001, blocked_after=1e6, time_limit=1e6, dt=1e-5))\n"
     )
     parent = f"import subprocess, sys; subprocess.run([sys.executable, '-c', {child!r}])"
     process = subprocess.Popen([sys.executable, "-c", parent], stdout=subprocess.PIPE, text=True, cwd=ROOT)

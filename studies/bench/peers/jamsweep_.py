@@ -1,10 +1,10 @@
-"""The engine of this repository: Lin's model with all defaults."""
+"""The engine of this repository: Lin's model with the paper's numerics."""
 
 import time
 from collections.abc import Callable
 
-from engine import Crowd, Model, Scenario, Scene, models, simulate
-from engine.scenario import Stopping
+from engine import Crowd, Model, Options, Scenario, Scene, models, simulate
+from engine.rooms import LIN_2016
 from engine.scene import Exit
 from studies.bench.packing import V_D, Packing
 from studies.bench.peers import Peer, Sample, Timing
@@ -23,7 +23,8 @@ def scenario(packing: Packing, until: float, model: Model | None = None) -> Scen
         scene=Scene(scene.walls, (beyond,)),
         crowd=Crowd.given(*state, radius=packing.radius, mass=packing.mass, v_d=V_D),
         model=model or models.lin_dem(),
-        stopping=Stopping(patience=1e6, time_limit=until),
+        options=Options(numerics="paper", blocked_after=1e6, time_limit=until),
+        paper=LIN_2016,
     )
 
 

@@ -7,5 +7,5 @@ from engine import laws, models
 from studies.bench.peers import Peer
 from studies.bench.peers.jamsweep_ import preparing
 
-LAWS = models.lin_dem("B")._replace(vision=laws.Absent())
+LAWS = models.lin_dem(friction="kept", wall_friction="kept", wall_social=False)._replace(anisotropy=laws.Absent())
 PEER = Peer("jamsweep_as_lammps", "LAMMPS's laws", ("jamsweep",), preparing(LAWS))

@@ -1,4 +1,4 @@
-"""LAMMPS: the same contact law, social force, drive and walls, without vision and without social walls.
+"""LAMMPS: the same contact law, social force, drive and walls, without anisotropy and without social walls.
 
 `pair_style born` has the energy A exp((sigma - r)/rho), hence the force (A/rho) exp((sigma - r)/rho): with one
 type for each radius it is the social force exactly, cut at the same gap. The drive m (v_d - v)/tau is a
@@ -70,7 +70,7 @@ def _space(packing: Packing) -> list[str]:
 
 def _contact() -> tuple[float, ...]:
     model = models.lin_dem()
-    return model.normal.k_n, model.sliding.k_t, model.normal.g_n, model.sliding.g_t, model.sliding.mu
+    return model.normal.k_n, model.friction.k_t, model.normal.g_n, model.friction.g_t, model.friction.mu
 
 
 def _pair_laws() -> list[str]:
