@@ -1,5 +1,6 @@
 """The contacts of one recorded run as arrays: who is inside, who touches whom, who touches the sides of a door."""
 
+import json
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -26,14 +27,14 @@ DIMS: Dims = {
 DOOR_DIMS: Dims = {"wall": ("wall", None), "door": ("door", None), "exit_door": ("exit",)}
 SLACK = 1e-9  # s, by which times that are equal may differ in rounding
 SAME_POINT = 1e-9  # m, between an end of a door and the end of the wall beside it
-UNEQUAL = 1e-6  # of the sampling interval, in which times of samples may deviate from equal spacing
+UNEQUAL = 1e-6  # of the sampling interval, in which times of samples may deviate besides from equal spacing
 
 
 class History(NamedTuple):
     """Persons inside and their contacts at every sample of a run; who has left is in no contact."""
 
     time: Floats  # (samples,) s
-    interval: float  # s between samples
+    interval: float  # s between samples, the longest
     x: Floats  # (samples, persons) m
     y: Floats  # (samples, persons) m
     inside: Bools  # (samples, persons)
@@ -76,7 +77,7 @@ def history(run: xr.Dataset) -> History:
     time = run["time"].values.astype(np.float64)
     x, y = (run[name].transpose("sample", "person").values.astype(np.float64) for name in ("x", "y"))
     rows, i, j = (run[name].values.astype(np.int64) for name in ("row_size", "contact_i", "contact_j"))
-    interval = sampling_interval(time)
+    interval = sampling_interval(time, _time_step(run))
     check_contacts(rows, i, j, x.shape[1])
     inside = np.isfinite(x) & np.isfinite(y) & (time[:, None] < leaving_times(run, x.shape[1]) - SLACK)
     sample = np.repeat(np.arange(time.size), rows)
@@ -102,18 +103,26 @@ def check_dims(run: xr.Dataset, dims: Dims) -> None:
             )
 
 
-def sampling_interval(time: Floats) -> float:
-    """Time between samples, s, checked to be the same throughout."""
+def _time_step(run: xr.Dataset) -> float:
+    """Time step, s, where the run says it; else 0."""
+    return float(json.loads(run.attrs.get("scenario", "{}")).get("options", {}).get("dt") or 0.0)
+
+
+def sampling_interval(time: Floats, dt: float) -> float:
+    """Longest time between samples, s, checked to be the same throughout but for the step dt that each is rounded to.
+
+    An interval that is no multiple of the step is sampled at the nearest steps.
+    """
     if time.size < 2:
         raise ValueError(f"run has {time.size} samples, of which no interval can be told: pass a run of two or more")
     steps = np.diff(time)
     interval = float(np.mean(steps))
-    if not interval > 0 or np.abs(steps - interval).max() > UNEQUAL * interval:
+    if not interval > 0 or np.abs(steps - interval).max() > dt + UNEQUAL * interval:
         raise ValueError(
             f"samples are spaced by {steps.min():g} to {steps.max():g} s, but lifetimes need equal steps: pass all"
             " samples of a run, in order"
         )
-    return interval
+    return float(steps.max())
 
 
 def check_contacts(rows: Ints, i: Ints, j: Ints, persons: int) -> None:

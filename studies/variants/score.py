@@ -30,7 +30,7 @@ def scored(facts: xr.Dataset, resamples: int = RESAMPLES, seed: int = 0) -> xr.D
     """Scores of all variants with intervals, and paired differences between each two.
 
     Seeds are resampled, whole: a draw takes the runs of the same seeds in all cells and variants, since a seed
-    means the same bodies and places everywhere. Intervals are the expanded percentile ones of
+    means the same bodies and positions everywhere. Intervals are the expanded percentile ones of
     `measures.uncertainty`. Where no run of a cell blocked, or every one, no resample knows better: what few runs
     leave open is in the term itself (`targets.predictive`).
 

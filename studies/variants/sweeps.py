@@ -16,7 +16,7 @@ QUICK_VARIANTS = ("RK", "RS", "WR", "W")
 
 
 class Cell(NamedTuple):
-    """A place in the space of parameters: N persons, desired speed (m/s), A (N), whether they turn."""
+    """A place in the space of parameters: N persons, desired speed (m/s), A (N), whether bodies rotate."""
 
     N: int
     v_d: float

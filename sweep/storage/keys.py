@@ -65,9 +65,9 @@ def _canonical(grid: Grid) -> Iterator[str]:
 def _around_seed(grid: Grid, point: Point) -> tuple[str, str]:
     """What stands before and after the seed in the canonical text of a cell's runs."""
     scenario = grid.scenario(point)
-    before, found, after = scenario.canonical().partition(f'"{SEED}":{scenario.seed},')
-    assert found, "the canonical text of a scenario names its seed"
-    return f'{before}"{SEED}":', f",{after}"
+    text, seed = scenario.canonical(), f"{scenario.seed}}}"
+    assert text.endswith(f'"{SEED}":{seed}'), "the canonical text of a scenario ends with its seed"
+    return text.removesuffix(seed), "}"
 
 
 def _kept(store: Store, mark: str, number: int) -> list[Wanted] | None:

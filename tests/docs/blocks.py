@@ -1,45 +1,26 @@
 """Code blocks of Markdown pages, and what is done with each."""
 
-import importlib
-import inspect
-import os
 import re
 import shlex
-import shutil
 import subprocess
-import sys
 from collections.abc import Iterator
 from importlib import metadata
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
-from engine.dispatch import Generic
 from markdown_it import MarkdownIt
 
-from engine import laws
 from sweep import cli
 from sweep.gridfile import read_gridfile, read_until
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
 PAGES = [page for page in PAGES if "_build" not in page.parts]
-LAW = re.compile(r"^@(\w+)\.law\(", re.MULTILINE)
+FILE = re.compile(r"# (\S+\.(?:toml|py))\n")  # the first line of a block that is a file
 SHELL = ("", "shell", "console", "bash", "sh")  # an indented block names no language
 EXTRAS = re.compile(r"(?:jamsweep|\.)\[([\w,-]+)\]")
 NOT_HERE = {"git": "needs a network", ".": "changes the shell that it is given to", "cd": "the same"}
-LAW_TYPE = re.compile(r"^class (\w+)\(NamedTuple\)", re.MULTILINE)
-COMPILED = {"CONTRIBUTING.md"}  # pages whose laws are compiled into a whole kernel, which takes half a minute
-ALONE = """
-import inspect
-from numba import njit
-from engine import laws
-for generic in {generic for kind in laws.KINDS.values() for generic in kind}:
-    for law in [law for law in generic.laws if law.__name__ in NAMES]:
-        words = ", ".join(inspect.signature(inspect.unwrap(generic)).parameters)
-        arguments = law(*[0.5] * len(law._fields)), *[0.5] * words.count(",")
-        assert njit(eval(f"lambda {words}: generic({words})", {"generic": generic}))(*arguments) == generic(*arguments)
-"""
 
 
 class Block(NamedTuple):
@@ -64,22 +45,22 @@ def _block(info: str, code: str, line: int) -> Block:
 
 
 def execute(page: Path, folder: Path) -> None:
-    """Execute the blocks of a page in order, in this folder, which must be the working directory."""
-    found = blocks(page)
-    adds_laws = any(LAW.search(block.code) for block in found)
+    """Execute the blocks of a page in order, in this folder, which must be the working directory, and tests in them."""
     namespace: dict[str, Any] = {"__name__": "__main__"}
-    for block in found:
+    for block in blocks(page):
         if block.language in SHELL:
             for line in _lines(block.code):
                 command(line)
         elif block.language == "toml":
             grid_file(block.code, folder)
-        elif block.language == "python" and not adds_laws:
+        elif block.language == "python":
+            if name := FILE.match(block.code):
+                (folder / name[1]).write_text(block.code, "utf-8")
             exec(compile(block.code, f"{page}, block at line {block.line}", "exec"), namespace)
         else:
-            assert block.language in ("python", "text"), f"{page}: nothing is known about {block.language!r}"
-    if adds_laws:
-        print(with_laws(page, [block.code for block in found if block.language == "python"], folder))
+            assert block.language == "text", f"{page}: nothing is known about {block.language!r}"
+    for test in [value for name, value in namespace.items() if name.startswith("test_")]:
+        test()
 
 
 def _lines(code: str) -> Iterator[str]:
@@ -127,45 +108,9 @@ def _pip(words: list[str]) -> None:
 
 def grid_file(code: str, folder: Path) -> None:
     """A grid file is valid, and lies in the folder under the name in its first line."""
-    name = re.match(r"# (\S+\.toml)\n", code)
+    name = FILE.match(code)
     assert name, "the first line of a grid file is its name, such as `# grid.toml`"
     path = folder / name[1]
     path.write_text(code, "utf-8")
     read_gridfile(path)
     read_until(path)
-
-
-def with_laws(page: Path, codes: list[str], folder: Path) -> str:
-    """Run the blocks of a page that adds laws, and the tests in them, in a copy of the engine that has those laws.
-
-    A block that registers a law goes to the end of the file of its kind. Where the kernel is not compiled, the laws
-    are: alone.
-    """
-    shutil.copytree(ROOT / "engine", folder / "engine", ignore=shutil.ignore_patterns("__pycache__"))
-    added = [code for code in codes if LAW.search(code)]
-    for code in added:
-        path = folder / f"{_module_of(code).replace('.', '/')}.py"
-        path.write_text(f"{path.read_text('utf-8')}\n\n{code}", "utf-8")
-    script = "\n".join(code for code in codes if code not in added)
-    script += "\nfor name in [name for name in globals() if name.startswith('test_')]:\n    globals()[name]()\n"
-    if page.name in COMPILED:
-        return _in_copy(script, folder, NUMBA_OPT="1")  # compiling takes longer than running
-    _in_copy(f"NAMES = {LAW_TYPE.findall(''.join(added))}{ALONE}", folder)
-    return _in_copy(script, folder, NUMBA_DISABLE_JIT="1")
-
-
-def _in_copy(script: str, folder: Path, **variables: str) -> str:
-    """What a script prints in a folder that has an engine of its own; a warning is an error."""
-    own = {"NUMBA_CACHE_DIR": str(folder / "cache"), "NUMBA_NUM_THREADS": "1", "PYTHONPATH": str(folder)}
-    run = [sys.executable, "-W", "error", "-c", script]
-    done = subprocess.run(run, cwd=folder, env=os.environ | own | variables, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    return done.stdout
-
-
-def _module_of(code: str) -> str:
-    """The module that has the generic functions which a block registers laws of."""
-    generics = [getattr(laws, name) for name in LAW.findall(code)]
-    modules = {inspect.unwrap(generic).__module__ for generic in generics if isinstance(generic, Generic)}
-    assert len(modules) == 1, f"laws of one block belong into {modules}"
-    return importlib.import_module(modules.pop()).__name__

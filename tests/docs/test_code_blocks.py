@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.docs.blocks import LAW, PAGES, ROOT, blocks, command, execute, grid_file
+from tests.docs.blocks import PAGES, ROOT, blocks, command, execute, grid_file
 
 MOST_TEXT = 3  # blocks on all pages that nothing executes
 PRINTED = {
@@ -78,8 +78,10 @@ def test_a_grid_file_with_an_unknown_keyword_is_an_error(tmp_path):
         grid_file('# grid.toml\nroom = "lin_room"\nstore = "here"\n[axes]\nspeed = [1.0]\n', tmp_path)
 
 
-def test_recipes_for_laws_are_recognised_as_such():
-    assert {name_of(page) for page in PAGES if any(LAW.search(b.code) for b in blocks(page))} == {
-        "CONTRIBUTING.md",
-        "docs/law.md",
-    }
+def test_a_block_that_is_a_file_is_there_for_commands_and_a_test_in_a_block_is_run(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    page = tmp_path / "page.md"
+    page.write_text("```python\n# rooms.py\nsize = 3\n```\n\n```python\ndef test_it():\n    assert size == 4\n```\n")
+    with pytest.raises(AssertionError):
+        execute(page, tmp_path)
+    assert (tmp_path / "rooms.py").read_text() == "# rooms.py\nsize = 3\n"

@@ -55,20 +55,13 @@ def test_every_keyword_of_every_room_has_a_unit_and_a_name():
     assert keywords <= set(schema.PARAMETERS)
 
 
-def test_every_reading_is_listed():
-    assert first_words("models.md", "### What the paper leaves open") == list(models.READINGS)
+def test_every_friction_is_listed():
+    assert first_words("models.md", "### What the paper leaves open") == list(models.FRICTION)
 
 
-@pytest.mark.parametrize(
-    ("before", "room", "strength"),
-    [
-        ("**Walls** act by", lin_room, None),
-        ("Nobody turns.", parisi_room, models.PARISI_READINGS["default"]),
-    ],
-)
-def test_the_parameters_of_a_model_are_the_defaults_of_its_room(before, room, strength):
+@pytest.mark.parametrize(("before", "room"), [("**Walls** act by", lin_room), ("## Parisi & Dorso", parisi_room)])
+def test_the_parameters_of_a_model_are_the_defaults_of_its_room(before, room):
     defaults = {name: p.default for name, p in inspect.signature(room).parameters.items()}
-    defaults["A"] = strength or defaults["A"]
     listed = 0
     for _, names, values in rows("models.md", before):
         for name, value in zip(words(names), values.split(", ") if words(names) else [], strict=True):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from engine import Crowd, Exit, Options, Scenario, Scene, laws, models, rooms, simulate
+from engine import Crowd, Exit, Model, Options, Scenario, Scene, laws, models, rooms, simulate
 from tests.engine.scenes import PAPERS, SMOOTH, UNDRIVEN
 
 ELASTIC = models.lin_dem(**UNDRIVEN | SMOOTH)  # bodies that nothing drives
@@ -210,10 +210,10 @@ def test_who_leaves_by_one_exit_is_gone_only_beyond_that_exit():
 
 
 def test_crossing_the_line_of_an_exit_beside_it_is_not_leaving():
-    """No walls here: persons pass the door's line left of it, and only the one in the door is out."""
+    """No walls and no forces here: persons pass the door's line left of it, and only the one in the door is out."""
     scene = Scene((), (Exit((2.0, 1.0), (2.0, 2.0), (1.0, 0.0)),))
     crowd = Crowd.given([1.5, 1.5], [0.5, 1.5], 1.0, 0.0, 0.0, 0.3, 70.0, 0.0)
-    run = simulate(Scenario(scene, crowd, ELASTIC, Options(blocked_after=2.0)))
+    run = simulate(Scenario(scene, crowd, Model(), Options(blocked_after=2.0)))
     assert run.exit_person.tolist() == [1]
     assert run.outcome == "blocked"
 

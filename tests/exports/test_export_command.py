@@ -102,7 +102,12 @@ def test_what_cannot_be_exported_is_one_line(
         (run, "nowhere/run.txt", "exits", "output folder"),
         (tmp_path / "none.nc", "run.txt", "exits", "none.nc' does not exist"),
         (broken, "run.txt", "exits", "cannot be read: it is damaged, or none of a run"),
-        (plain, "run.txt", "exits", "has no trajectories: record it with every=0.1 (in a shell: --record-every 0.1)"),
+        (
+            plain,
+            "run.txt",
+            "exits",
+            "has no trajectories: record it with record_every=0.1 (in a shell: --record-every 0.1)",
+        ),
         (plain, "f.csv", "forces-on-persons", "does not tell its contact forces"),
         (store, "run.txt", "exits", "holds many runs, of which this export takes one"),
         (store, "f.csv", "forces-on-walls", "holds many runs"),

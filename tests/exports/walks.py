@@ -31,7 +31,7 @@ def walked(
 ) -> xr.Dataset:
     """Person k crosses door k (modulo their number) in its middle, straight out at a speed (m/s), at times[k] (s).
 
-    walk_on : s for which the departed are still recorded; rounded : decimals of the recorded places
+    walk_on : s for which the departed are still recorded; rounded : decimals of the recorded positions
     """
     lines, ways = np.array(doors, float).reshape(-1, 2, 2), np.array(outward, float)
     ways /= np.linalg.norm(ways, axis=1)[:, None]

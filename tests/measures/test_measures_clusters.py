@@ -124,7 +124,7 @@ def test_the_interval_holds_the_planted_probability_about_as_often_as_it_says():
 def test_bad_runs_are_refused_in_one_line():
     run = recorded([[(0, 1)], []])
     for name in ("contact_i", "row_size", "exit_person", "x"):
-        with pytest.raises(ValueError, match=f"run has no variable {name}: .* every=0.02, contacts=True"):
+        with pytest.raises(ValueError, match=f"run has no variable {name}: .* record_every=0.02, contacts=True"):
             granular_clusters(run.drop_vars(name))
     with pytest.raises(ValueError, match=r"time has the dimensions \(seed, sample\).*one by one"):
         granular_clusters(run.assign_coords(time=run.time.expand_dims(seed=2)))

@@ -12,7 +12,7 @@ from sweep import to_dataset
 from sweep.pages import player_page
 from tests.pages.browser import Browser, found
 
-RECORDED = {"every": 0.1, "contacts": True}
+RECORDED = {"record_every": 0.1, "contacts": True}
 
 
 @pytest.fixture(scope="session")
@@ -30,7 +30,7 @@ def walking_on() -> xr.Dataset:
 
 @pytest.fixture(scope="session")
 def walk() -> xr.Dataset:
-    """Twelve persons who all get out; places alone, no contacts."""
+    """Twelve persons who all get out; positions alone, no contacts."""
     return to_dataset(simulate(rooms.lin_room(v_d=1.0, N=12, seed=1, size=5.0, record_every=0.1, record="positions")))
 
 

@@ -58,7 +58,7 @@ def test_view_refuses_what_it_cannot_play(file: Path, tmp_path: Path, capsys: py
         assert f"run file '{path}' cannot be read: it is damaged, or none of a run" in refused(capsys, "view", path)
     assert "does not exist" in refused(capsys, "view", tmp_path / "none.nc")
     assert "is a folder: name a run file, such as one of those in " in refused(capsys, "view", tmp_path)
-    assert "every 0 is not a whole number above 0" in refused(capsys, "view", file, "--record-every", 0)
+    assert "every 0 is not a whole number above 0" in refused(capsys, "view", file, "--every", 0)
     assert "output folder" in refused(capsys, "view", file, "-o", tmp_path / "no" / "run.html")
     assert not list(tmp_path.glob("*.html"))
 
@@ -90,7 +90,7 @@ def test_a_gif_shows_the_run_from_begin_to_end(file: Path, tmp_path: Path, capsy
     assert sorted(path.name for path in tmp_path.iterdir()) == ["run.gif", "run.nc"]
 
 
-def test_a_film_shows_those_who_are_there_between_their_places(walk: xr.Dataset) -> None:
+def test_a_film_shows_those_who_are_there_between_their_positions(walk: xr.Dataset) -> None:
     drawing = Drawing(walk, "speed")
     for k, part in ((20, 0.04), (int(walk.sizes["sample"] * 0.7), 0.06)):
         time = float(walk.time[k]) + part

@@ -175,7 +175,7 @@ def test_who_has_crossed_the_door_holds_no_arch(show: Show) -> None:
     assert blocking_clusters(run).path_size.values.tolist() == [2, 0]
 
 
-def test_between_samples_persons_are_between_their_places(playing: Browser, jam: xr.Dataset) -> None:
+def test_between_samples_persons_are_between_their_positions(playing: Browser, jam: xr.Dataset) -> None:
     k = 10
     playing.value(f"player.seek({float(jam.time[k]) + 0.03})")
     playing.screenshot()
@@ -229,7 +229,7 @@ def test_every_control_has_a_name(playing: Browser) -> None:
     assert [role for role, name in names if not name.strip()] == []
 
 
-def test_a_run_of_places_alone_plays_with_contacts_found_from_them(show: Show, walk: xr.Dataset) -> None:
+def test_a_run_of_positions_alone_plays_with_contacts_found_from_them(show: Show, walk: xr.Dataset) -> None:
     browser = show(walk)
     browser.press("ArrowRight")
     assert browser.errors == []

@@ -295,7 +295,7 @@ def tiny(monkeypatch):
 
     def grids(quick):
         small = {"N": 30, "size": 6.0}
-        recorded = {"every": 30.0, "contacts": True}
+        recorded = {"record_every": 30.0, "contacts": True}
         return {
             "speeds": Grid(rooms.lin_room, v_d=[0.6, 1.0, 1.4, 2.0], N=[100, 200, 300], seed=[0], time_limit=2.0),
             "strengths": Grid(sweeps.strength_room, A=list(paper.FIG4_A), walls=sweeps.WALLS, seed=[0]),

@@ -9,10 +9,11 @@ import pytest
 import xarray as xr
 
 from engine import BadInput, rooms
+from studies import measures
 from studies.parisi import artefact, everything, fig1, fig4, fig5, fig6, fig8, fig9, fig10, sweeps, table1
 from studies.presentation.verdicts import Verdict
 from studies.published import parisi2005 as paper
-from sweep import Grid, Store
+from sweep import Grid, Store, read_run, sweep
 from sweep.cli import _studies
 from sweep.schema import run_key
 from tests.measures.planted import flagged
@@ -145,7 +146,7 @@ def tiny(monkeypatch):
     """The sweeps with a few persons in a small room."""
 
     def grids(quick):
-        recorded = {"every": 0.02, "contacts": True, "state": "places", "N": 80, "size": 8.0}
+        recorded = {"record_every": 0.02, "contacts": True, "record": "positions", "N": 80, "size": 8.0}
         return {"speeds": Grid(rooms.parisi_room, v_d=[0.8, 1.5, 2.0, 3.0, 4.0, 6.0], seed=range(2), **recorded)}
 
     monkeypatch.setattr(sweeps, "grids", grids)
@@ -163,6 +164,21 @@ def test_a_tiny_sweep_goes_from_runs_to_pictures_and_is_counted_once(tiny, tmp_p
     monkeypatch.setattr(sweeps, "counts_of", None)
     again = sweeps.Sweeps(True, 1, tmp_path)
     xr.testing.assert_identical(again.speed_counts, first.speed_counts)
+
+
+def test_contacts_are_counted_where_the_interval_is_no_multiple_of_the_step(tmp_path):
+    """Samples are those of the nearest steps, 0.015 or 0.02 s apart; one that is missing is still noticed."""
+    grid = Grid(rooms.parisi_room, seed=[0], N=30, size=5.0, dt=0.005, record_every=0.018, contacts=True)
+    sweep(grid, tmp_path, jobs=1, progress=False)
+    run = read_run(next((tmp_path / "runs").glob("*.nc")))
+    assert {f"{step:.3f}" for step in np.diff(run.time)} == {"0.015", "0.020"}
+    counts = measures.contact_counts(run)
+    assert float(counts.interval) == pytest.approx(0.02)
+    assert int(counts.samples) == int((run.time <= run.exit_time.max()).sum())
+    rows = run.row_size.values.cumsum()
+    without = run.drop_isel(sample=9, contact=np.arange(rows[8], rows[9]))
+    with pytest.raises(ValueError, match="lifetimes need equal steps"):
+        measures.contact_counts(without)
 
 
 def run_of(of, v_d, seed):

@@ -26,8 +26,9 @@ def jamsweep(*arguments: object) -> int:
 def old(grid: Grid, store: Path) -> Store:
     """A store with four of six runs, made by another engine."""
     with pytest.MonkeyPatch.context() as patch:
-        for module in ("schema", "storage.store", "storage.serving", "gathering"):
+        for module in ("schema", "storage.serving", "gathering"):
             patch.setattr(importlib.import_module(f"sweep.{module}"), "FINGERPRINT", OLD)
+        patch.setattr("sweep.storage.keys.package_fingerprint", lambda: OLD)
         sweep(Grid("lin_room", v_d=[1.0, 1.4], seed=range(2), **TINY), store, jobs=1, progress=False)
     return Store(store)
 
@@ -35,7 +36,8 @@ def old(grid: Grid, store: Path) -> Store:
 def test_an_edited_engine_reruns_and_says_how_many(grid: Grid, old: Store, capsys: pytest.CaptureFixture) -> None:
     ds = sweep(grid, old, jobs=1)
     said = capsys.readouterr().err
-    assert f"4 of 6 runs are done by another state of the engine ({OLD}; now {schema.FINGERPRINT}): run anew" in said
+    states = f"another state of the engine or of a law ({OLD}; now {schema.FINGERPRINT})"
+    assert f"4 of 6 runs are done by {states}: run anew" in said
     assert "6 runs: 0 done, 6 to do" in said
     assert len(old.finished()) == 10
     assert "accepted_engines" not in ds.attrs

@@ -191,7 +191,7 @@ def test_a_study_gets_its_options(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         (["run", "lin_room", "--N", "10", "--size", "2.2"], "do not fit"),
         (["run", "lin_room", "--dt", "0.1"], "dt 0.1 s is beyond"),
         (["run", "lin_room", "--L", "0.5"], "narrower than the largest person"),
-        (["run", "lin_room", "--reading", "Q"], "reading 'Q' is not known"),
+        (["run", "lin_room", "--friction", "Q"], "friction 'Q' is not known"),
         (["run", "lin_room", "--width", "1"], "No such option"),
         (["run", "lin_room", "-o", "/proc/run.nc"], "output folder '/proc' cannot be written to"),
         (["sweep", "/nowhere/grid.toml"], "name a TOML file; `jamsweep init` writes one"),
@@ -222,7 +222,7 @@ def test_bad_input_is_one_line_and_exit_code_2(arguments: list, words: str, caps
         ("[axes]\nv_d = [1.0, nan]\n", "v_d nan"),
         ("[constants]\nN = [5]\n", "is not a single value"),
         ("[axes]\nN = [5]\n[constants]\nN = 5\n", "both axis and constant"),
-        ("[constants]\nreading = 'Q'\n", "reading 'Q' is not known"),
+        ("[constants]\nfriction = 'Q'\n", "friction 'Q' is not known"),
     ],
 )
 def test_a_bad_grid_file_is_one_line_and_exit_code_2(

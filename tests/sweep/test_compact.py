@@ -19,7 +19,7 @@ from sweep.storage.compact import compact
 from sweep.storage.verify import verify
 from tests.sweep.tiny import TINY, run_files
 
-GRID = Grid("lin_room", every=[0.0, 0.5], state=["whole", "places"], seed=range(2), **TINY)
+GRID = Grid("lin_room", record_every=[0.0, 0.5], record=["full", "positions"], seed=range(2), **TINY)
 
 
 @pytest.fixture(scope="module")

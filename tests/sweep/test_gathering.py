@@ -13,7 +13,7 @@ from tests.sweep.tiny import TINY
 
 
 def test_dimensions_are_the_axes_in_order_and_then_the_exits(store: Path) -> None:
-    grid = Grid("lin_room", v_d=[1.4, 1.0], N=[5, 3], seed=[7, 2], size=4, time_limit=3.0, reading="W")
+    grid = Grid("lin_room", v_d=[1.4, 1.0], N=[5, 3], seed=[7, 2], size=4, time_limit=3.0, inertia="disc")
     ds = sweep(grid, store, jobs=1)
     assert ds.exit_time.dims == ("v_d", "N", "seed", "exit")
     assert ds.outcome.dims == ("v_d", "N", "seed")
@@ -23,7 +23,7 @@ def test_dimensions_are_the_axes_in_order_and_then_the_exits(store: Path) -> Non
     assert ds.sizes["exit"] == ds.N_out.max()
     assert ds.v_d.units == "m s-1"
     assert float(ds.size) == 4.0
-    assert str(ds.reading.values) == "W"
+    assert str(ds.inertia.values) == "disc"
     assert ds.attrs["room"] == "lin_room"
     assert "Common random numbers" in ds.random_numbers
 
@@ -77,9 +77,9 @@ def test_a_grid_without_axes_is_one_run(store: Path) -> None:
 
 
 def test_axes_of_words_and_of_truth_values_survive_the_file(store: Path) -> None:
-    grid = Grid("lin_room", reading=["W", "RK"], contacts=[False, True], every=0.5, **TINY)
+    grid = Grid("lin_room", inertia=["disc", "sphere"], contacts=[False, True], record_every=0.5, **TINY)
     ds = sweep(grid, store, jobs=1)
-    assert ds.reading.values.tolist() == ["W", "RK"]
+    assert ds.inertia.values.tolist() == ["disc", "sphere"]
     assert ds.contacts.values.tolist() == [False, True]
     assert ds.contacts.dtype == bool
 

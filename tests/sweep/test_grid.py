@@ -32,7 +32,7 @@ def test_whole_numbers_and_floats_ask_for_the_same_run() -> None:
 
 
 def test_every_parameter_changes_the_key() -> None:
-    grid = Grid("lin_room", seed=[0, 1], v_d=[1.0, 1.0000000000000002], mu=[0.5, 0.6], reading=["RK", "W"])
+    grid = Grid("lin_room", seed=[0, 1], v_d=[1.0, 1.0000000000000002], mu=[0.5, 0.6], friction=["reset", "kept"])
     assert len({run_key(grid.scenario(point)) for point in grid.points()}) == len(grid) == 16
 
 
@@ -56,7 +56,7 @@ def test_a_grid_survives_its_text_form(grid: Grid) -> None:
         ({"N": [5, -1]}, "N -1 is not.*N = -1"),
         ({"N": [5, 5000]}, "do not fit.*N = 5000"),
         ({"dt": [0.1]}, "dt 0.1 s is beyond.*dt = 0.1"),
-        ({"reading": ["RK", "Q"]}, "reading 'Q' is not known.*reading = Q"),
+        ({"friction": ["reset", "Q"]}, "friction 'Q' is not known.*friction = Q"),
         ({"L": [1.0, 0.5]}, "exit width 0.5 m is narrower.*L = 0.5"),
         ({"mu": [-1.0]}, "mu -1.0 is not a finite number of 0 or more.*mu = -1.0"),
         ({"tau": [0.0]}, "tau 0.0 is not a finite number above 0.*tau = 0.0"),
@@ -86,7 +86,9 @@ def test_seeds_of_cells_that_the_grid_has_not_are_refused(numbers: dict) -> None
 
 
 def test_cells_of_words_and_truth_values_keep_their_seeds_through_json() -> None:
-    grid = Grid("lin_room", v_d=[1, 2.5], inertia=["disc", "none"], contacts=[True, False], seed=range(3), every=1.0)
+    grid = Grid(
+        "lin_room", v_d=[1, 2.5], inertia=["disc", "none"], contacts=[True, False], seed=range(3), record_every=1.0
+    )
     part = grid.first_seeds({(1, "none", False): 2, (2.5, "disc", True): 1})
     again = Grid.from_json(part.to_json())
     assert len(again) == 3 == len(list(again.points()))

@@ -65,7 +65,7 @@ def test_fail_fast_begins_no_run_after_one_that_failed(store: Path, monkeypatch:
     begun: list[int] = []
 
     def second_fails(scenario: Scenario) -> object:
-        if scenario.stopping.time_limit == TINY["time_limit"]:  # no run of one step, which is to compile
+        if scenario.options.time_limit == TINY["time_limit"]:  # no run of one step, which is to compile
             begun.append(scenario.seed)
         return 1 / 0 if len(begun) == 2 else simulate(scenario)
 
@@ -79,7 +79,7 @@ def test_fail_fast_begins_no_run_after_one_that_failed(store: Path, monkeypatch:
 @pytest.mark.parametrize(
     ("room", "parameters"),
     [
-        ("lin_room", {"v_d": 0.1 + 0.2, "reading": "W", "every": 0.5, "contacts": True, **TINY}),
+        ("lin_room", {"v_d": 0.1 + 0.2, "inertia": "disc", "record_every": 0.5, "contacts": True, **TINY}),
         ("lin_room", {"seed": 3, "contacts": False, **TINY}),
     ],
 )

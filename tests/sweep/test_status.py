@@ -42,7 +42,13 @@ def test_kept_keys_are_those_of_this_grid_engine_and_schema(
     path = store / keys.FILE
     path.write_text(path.read_text().replace(first[2].key, "0" * 64))
     assert keys_of(grid, kept) == first, "altered keys were taken"
+    monkeypatch.setattr(keys, "package_fingerprint", lambda: "rooms and options edited")
+    with monkeypatch.context() as patch:
+        patch.setattr(keys, "_canonical", lambda grid: [])
+        assert keys_of(grid, kept) == [], "keys of an engine with other rooms were taken"
+    assert keys_of(grid, kept) == first, "what stands outside the kernel is part of no key"
     monkeypatch.setattr(schema, "FINGERPRINT", "another")
+    monkeypatch.setattr(keys, "package_fingerprint", lambda: "kernel edited")
     assert not {key.key for key in keys_of(grid, kept)} & {key.key for key in first}
 
 

@@ -26,7 +26,7 @@ def command(folder: Path, runs: dict[str, str]) -> Iterator[subprocess.Popen]:
     toml = folder / "grid.toml"
     toml.write_text(
         f'room = "lin_room"\nstore = "{folder / "results"}"\n[axes]\ntime_limit = {runs["time_limit"]}\n'
-        f"[constants]\nN = 5\nsize = 4\nv_d = 0.001\npatience = 1e6\ndt = {runs['dt']}\n"
+        f"[constants]\nN = 5\nsize = 4\nv_d = 0.001\nblocked_after = 1e6\ndt = {runs['dt']}\n"
     )
     process = subprocess.Popen(
         [sys.executable, "-m", "sweep.cli", "sweep", toml, "--jobs", "2"],
