@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 READY := $(VENV)/ready
 
 .PHONY: notebooks package
-.PHONY: help setup bench stress torture study-accuracy study-readings study-real-crowds test lint docs constraints clean
+.PHONY: help setup bench stress torture study-accuracy study-variants study-real-crowds test lint docs constraints clean
 .DEFAULT_GOAL := help
 
 help:  ## this list
@@ -36,8 +36,8 @@ study-%: $(READY)  ## reproduce a figure: make study-fig10, study-parisi, study-
 study-accuracy: $(READY)  ## error, bias and time of the numerics: make study-accuracy [QUICK=1] [JOBS=2] [DOCS=1] [MORE=4]
 	@$(BIN)/python -m studies.accuracy --jobs $(JOBS) $(if $(QUICK),--quick) $(if $(DOCS),--docs) $(if $(MORE),--more $(MORE))
 
-study-readings: $(READY)  ## readings of Lin's paper against its numbers: make study-readings [QUICK=1] [JOBS=2] [DOCS=1]
-	@$(BIN)/python -m studies.readings --jobs $(JOBS) $(if $(QUICK),--quick) $(if $(DOCS),--docs)
+study-variants: $(READY)  ## variants of Lin's model against its numbers: make study-variants [QUICK=1] [JOBS=2] [DOCS=1]
+	@$(BIN)/python -m studies.variants --jobs $(JOBS) $(if $(QUICK),--quick) $(if $(DOCS),--docs)
 
 study-real-crowds: $(READY)  ## real crowds beside simulated ones: make study-real-crowds DATA=folder [QUICK=1] [JOBS=2]
 	@$(BIN)/python -m studies.real_crowds --jobs $(JOBS) $(if $(QUICK),--quick) $(if $(DATA),--data '$(DATA)')

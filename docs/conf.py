@@ -36,8 +36,11 @@ nitpick_ignore = [  # types of an attribute of Store that is not for users
     ("py:class", "sweep.storage.manifest.Entry"),
 ]
 nitpick_ignore_regex = [  # no inventory of another project is fetched: the build needs no network
-    (r"py:.*", rf"~?({package})\..*")
-    for package in ("numpy", "xarray", "pandas", "pathlib", "collections", "typing", "click")
+    *(
+        (r"py:.*", rf"~?({package})\..*")
+        for package in ("numpy", "xarray", "pandas", "pathlib", "collections", "typing", "click")
+    ),
+    ("py:class", r".*Parameter|-?inf|[\d.]+|True|False|'.*'"),  # ranges of the parameters of laws, in annotations
 ]
 
 html_theme = "furo"

@@ -77,8 +77,9 @@ def lin_room(
     model = models.lin_dem(
         A, B, phi, E, poisson, g_n, g_t, mu, tau, friction, wall_friction, wall_mu, wall_social, wall_A, inertia
     )
+    scene = square_room(size, L)
     crowd = Crowd.uniform(N, (0.0, size, 0.0, size), radius=(0.25, 0.35), mass=(60.0, 80.0), v_d=v_d)
-    return Scenario(square_room(size, L), crowd, model, seed=seed, paper=LIN_2016)
+    return Scenario(scene, crowd, model, seed=seed, paper=LIN_2016)
 
 
 @with_options
@@ -126,8 +127,9 @@ def parisi_room(
     require(v_d >= 0.05, "v_d", v_d, "is below 0.05 m/s, by which desired speeds spread", "give a larger one")
     model = models.parisi_dorso(A, B, k_n, kappa, g, tau)
     v_ds, speed = (v_d - 0.05, v_d + 0.05), (0.995, 1.005)
+    scene = square_room(size, L, walk_on=1.0)
     crowd = Crowd.uniform(N, (0.0, size, 0.0, size), (0.25, 0.29), mass, v_ds, speed)
-    return Scenario(square_room(size, L, walk_on=1.0), crowd, model, seed=seed, paper=PARISI_2005)
+    return Scenario(scene, crowd, model, seed=seed, paper=PARISI_2005)
 
 
 ROOMS: dict[str, Callable[..., Scenario]] = {"lin_room": lin_room, "parisi_room": parisi_room}

@@ -12,7 +12,7 @@ from typing import Any
 
 from sphinx.application import Sphinx
 
-from engine.dispatch import Generic
+from engine.kernel.dispatch import Generic
 
 ENTRY = re.compile(r"(?P<names>\w+(?:, \w+)*)(?: : (?P<words>.*))?$")
 FIELD = re.compile(r"^    (?P<name>\w+): (?P<type>\w+)[^#\n]*(?:#\s*(?P<words>.+))?$", re.MULTILINE)

@@ -8,13 +8,13 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from engine import laws
-from engine.accuracy import LEVELS
-from engine.dispatch import Generic
+from engine.kernel.dispatch import Generic
+from engine.options import LEVELS
 from sweep import schema
 from sweep.cli import cli
 from sweep.schema import Variable
 
-FROM_CONTACTS, FROM_SAMPLES, WHOLE = "`contacts`", "`every` > 0", '`state="whole"`'
+FROM_CONTACTS, FROM_SAMPLES, FULL = "`contacts`", "`record_every` > 0", '`record="full"`'
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -38,7 +38,7 @@ def _recorded_with(v: Variable) -> str:
     dims = {*v.dims, v.counts}
     needs = [FROM_SAMPLES] if dims & {"sample", "contact"} else []
     needs += [FROM_CONTACTS] if "contact" in dims else []
-    needs += [WHOLE] if v.name in schema.WHOLE_STATE else []
+    needs += [FULL] if v.name in schema.FULL_STATE else []
     return ", ".join(needs) or "always"
 
 
@@ -72,22 +72,21 @@ def outcomes() -> str:
 
 def law_kinds() -> str:
     """What a model's fields must have a law of, and the laws that there are."""
-    fields: dict[tuple[Generic, ...], list[str]] = {}
-    for kind, generics in laws.KINDS.items():
-        fields.setdefault(generics, []).append(f"`{kind}`")
-    rows = []
-    for generics, kinds in fields.items():
-        for generic in generics:
-            signature = f"`{generic.__name__}{inspect.signature(inspect.unwrap(generic))}`"
-            rows.append((", ".join(kinds) if generic is generics[0] else "", signature, _first_paragraph(generic)))
+    fields: dict[Generic, list[str]] = {}
+    for kind, generic in laws.KINDS.items():
+        fields.setdefault(generic, []).append(f"`{kind}`")
+    rows = [
+        (", ".join(kinds), f"`{g.__name__}{inspect.signature(inspect.unwrap(g))}`", _first_paragraph(g))
+        for g, kinds in fields.items()
+    ]
     return table(("field of a model", "function", "what"), rows)
 
 
 def law_types() -> str:
     """The laws of each kind."""
     kinds: dict[str, list[str]] = {}
-    for kind, (first, *_) in laws.KINDS.items():
-        names = ", ".join(f"`{law.__name__}`" for law in first.laws)
+    for kind, call in laws.KINDS.items():
+        names = ", ".join(f"`{law.__name__}`" for law in call.laws)
         kinds.setdefault(names, []).append(f"`{kind}`")
     return table(("field of a model", "laws"), ((", ".join(fields), names) for names, fields in kinds.items()))
 
@@ -95,10 +94,10 @@ def law_types() -> str:
 def accuracy_levels() -> str:
     """What each level of accuracy stands for."""
     rows = (
-        (f'`"{name}"`', f"`{level.integrator}`", f"{level.part:g}", f"{level.force_tolerance:g} N")
+        (f'`"{name}"`', f"`{level.integrator}`", f"{level.fraction:g}", f"{level.force_tolerance:g} N")
         for name, level in LEVELS.items()
     )
-    return table(("accuracy", "integrator", "share of the longest stable step", "force tolerance"), rows)
+    return table(("accuracy", "integrator", "fraction of the longest stable step", "force tolerance"), rows)
 
 
 def commands() -> str:

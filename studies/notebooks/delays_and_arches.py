@@ -27,7 +27,11 @@ STORE = Path("results/notebooks/parisi")
 plt.rcParams.update(figures.STYLE | {"figure.dpi": 150})
 
 # %%
-recorded = {"every": 0.05, "contacts": True, "state": "places"}  # places and contacts are all that is needed here
+recorded = {
+    "record_every": 0.05,
+    "contacts": True,
+    "record": "positions",
+}  # places and contacts are all that is needed here
 grid = Grid(rooms.parisi_room, v_d=[2.0, 6.0], N=150, seed=range(6), **recorded)
 sweep(grid, STORE, jobs=2)
 ds = open_results(STORE)

@@ -26,7 +26,7 @@ plt.rcParams.update(figures.STYLE | {"figure.dpi": 150})
 # %% [markdown]
 # ## Simulate, write, read
 #
-# A room is a function of named parameters, all in SI units; `every=0.1` records the state ten times a second, and
+# A room is a function of named parameters, all in SI units; `record_every=0.1` records the state ten times a second, and
 # `contacts=True` also who touches whom. The same parameters and the same seed give the same run, to the last bit.
 # (The first run of a model compiles it, which takes some 20 s.)
 

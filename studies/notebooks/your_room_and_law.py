@@ -8,85 +8,46 @@
 # %% [markdown]
 # ## A law of your own
 #
-# A law of force is a small type with its parameters and a scalar function with its formula; the engine compiles it
-# into its time loop. Laws stand in the engine's folder `engine/laws`, since a fingerprint of that folder tells runs
-# of one state of the laws from those of another. In a clone of jamsweep you would put a file there. Here we work on a
-# copy of the engine, so that this notebook changes nothing that is installed; it must be found before the installed
-# one, hence this cell comes first.
-#
-# The law: a repulsion k/gap^2 between persons, held at its value at 1 cm for smaller gaps. Besides its formula it
-# says where it ends, how far it reaches, and how stiff it is, from which neighbour lists and checks of the time step
-# follow.
+# A law of force is a small type with its parameters, and one function with its formula; the engine compiles it into its
+# time loop. It may stand in any file, or in a notebook. The law here: a repulsion k/gap^2 between persons, held at its
+# value at 1 cm for smaller gaps. How far it acts and how stiff it is follow from the formula. A run's key knows the
+# law's code: an edited law runs anew.
 
 # %%
-import shutil
-import sys
 from pathlib import Path
+from typing import Annotated, NamedTuple
 
-import studies
-
-FOLDER = Path("results/notebooks/mine").absolute()
-installed = Path(studies.__file__).parents[1] / "engine"
-shutil.copytree(installed, FOLDER / "engine", dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__"))
-(FOLDER / "engine" / "laws" / "mine.py").write_text(
-    '''"""A power law of one's own."""
-
-from typing import NamedTuple
-
-from engine.laws.repulsion import cut_at, reach, social, social_stiffness
-
-
-class PowerLaw(NamedTuple):
-    """k/gap^2, held within 1 cm."""
-
-    k: float  # N m^2
-    cut: float = 0.0  # N, set by the scenario
-
-
-@social.law(PowerLaw)
-def _power_law(p, gap):
-    return max(p.k / max(gap, 0.01) ** 2 - p.cut, 0.0)
-
-
-@cut_at.law(PowerLaw)
-def _cut_power_law(p, tolerance):
-    return p._replace(cut=tolerance)
-
-
-@reach.law(PowerLaw)
-def _reach_of_power_law(p):
-    return (p.k / p.cut) ** 0.5
-
-
-@social_stiffness.law(PowerLaw)
-def _power_law_stiffness(p):
-    return 2.0 * p.k / 0.01**3
-''',
-    "utf-8",
-)
-sys.path.insert(0, str(FOLDER))
-
-# %%
 import matplotlib.pyplot as plt
 
-from engine import Crowd, Exit, Options, Scenario, Scene, models, simulate
+from engine import Crowd, Exit, Options, Scenario, Scene, laws, models, simulate
 from studies import measures
 from studies.presentation import figures
 from sweep import Grid, open_results, sweep
 
 plt.rcParams.update(figures.STYLE | {"figure.dpi": 150})
+FOLDER = Path("results/notebooks/mine").absolute()
+
+
+class PowerLaw(NamedTuple):
+    """k/gap^2, held within 1 cm."""
+
+    k: Annotated[float, laws.at_least(0.0, "N m^2", "strength")]
+
+
+@laws.social.law(PowerLaw)
+def power_law(p: PowerLaw, gap: float) -> float:
+    return p.k / max(gap, 0.01) ** 2
+
 
 # %% [markdown]
 # ## A room of your own
 #
-# A room is any function of named parameters that returns a `Scenario`: walls and exits, a crowd, a model, numerics.
+# A room is any function of named parameters that returns a `Scenario`: walls and exits, a crowd, a model, a seed.
 # Each keyword may then be an axis of a sweep. Bodies, friction and drive are those of Lin, Ma & Lo's model; only the
 # social force between persons is exchanged. A scenario is checked when it is made: a door narrower than a person, or
 # a time step too long for the law, is refused with a remedy.
 
 # %%
-from engine.laws.mine import PowerLaw  # type: ignore[import-not-found]  # it stands in the copy
-
 LAWS = {"exponential": models.lin_dem().social, "power law": PowerLaw(k=0.03)}
 
 
@@ -161,4 +122,4 @@ measures.mean_over(difference, censored=facts.censored.any("door")).to_dataframe
 
 # %% [markdown]
 # An interval that holds zero says that these runs do not tell the two places apart; more seeds would. To keep the
-# law, move its file into `engine/laws` of a clone and give it a test: `CONTRIBUTING.md` has the recipe.
+# law, put it into a file of its own: `docs/law.md` has the recipe.

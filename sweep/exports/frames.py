@@ -155,13 +155,16 @@ def _shifted(positions: Floats, time: Floats, ahead: Floats) -> Floats:
 
 
 def _round(rate: float) -> float:
-    """A rate that is whole up to rounding, as the whole number."""
-    return float(round(rate)) if abs(rate - round(rate)) < UNEQUAL * rate else rate
+    """A rate without what rounding made of it."""
+    return float(f"{rate:.12g}")
 
 
 def _step_out(at: Floats, lines: Doors, left: Departure, person: int, rate: float) -> None:
     """Make a person (places (frames, 2) m, changed here) cross its door between the frames around its leaving."""
     first, k = int(left.frame[person]), int(left.door[person])
+    if first > 1 and not np.isfinite(at[first - 1]).all():  # left between this frame and the step nearest to it
+        waited = left.time[person] - (first - 2) / rate
+        at[first - 1] = at[first - 2] + (left.place[person] - at[first - 2]) / (rate * waited)
     ahead = (at - lines.start[k]) @ lines.outward[k]  # m beyond the line of the door
     early = np.flatnonzero((ahead[:first] > 0.0) & (ahead[:first] <= BEYOND))
     at[early] -= ahead[early, None] * lines.outward[k]

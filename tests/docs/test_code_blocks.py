@@ -9,8 +9,7 @@ from tests.docs.blocks import PAGES, ROOT, blocks, command, execute, grid_file
 MOST_TEXT = 3  # blocks on all pages that nothing executes
 PRINTED = {
     "README.md": ("all 100 persons were out", "Name: blocked_share, dtype: float64"),
-    "CONTRIBUTING.md": ("all 20 persons were out",),
-    "docs/law.md": ("all 20 persons were out",),
+    "docs/law.md": ("all 10 persons were out",),
     "docs/numerics.md": ("stiffness of the contacts",),
     "docs/study.md": ("a wider exit is faster",),
 }

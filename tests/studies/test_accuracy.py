@@ -144,7 +144,9 @@ def test_nothing_to_divide_by_is_undefined_and_not_shown():
 def test_errors_fall_with_the_step_and_the_skin_changes_nothing():
     case = Case("lin_room", 1.0, 0.2, Setting("semi_implicit", 5e-4, 1e-6), (), N=20)
     coarse, fine = Setting("semi_implicit", 4e-3, 1e-6), Setting("semi_implicit", 1e-3, 1e-6)
-    errors = positions.errors_of(case, 0, [coarse, fine, coarse._replace(skin=0.06), coarse._replace(force_tolerance=3.0)])
+    errors = positions.errors_of(
+        case, 0, [coarse, fine, coarse._replace(skin=0.06), coarse._replace(force_tolerance=3.0)]
+    )
     assert 0.0 < errors[fine] < errors[coarse]
     assert errors[coarse._replace(skin=0.06)] == pytest.approx(errors[coarse], rel=1e-6)
     assert errors[coarse._replace(force_tolerance=3.0)] > 2.0 * errors[coarse]
