@@ -24,7 +24,7 @@ myst_update_mathjax = False  # formulas are MathML
 
 autodoc_default_options = {"members": True}
 autodoc_member_order = "bysource"
-autodoc_preserve_defaults = True
+autodoc_preserve_defaults = False  # of rooms, whose options stand in no source line
 autodoc_typehints_format = "short"
 python_use_unqualified_type_names = True
 add_module_names = False

@@ -26,9 +26,9 @@ plt.rcParams.update(figures.STYLE | {"figure.dpi": 150})
 # %% [markdown]
 # ## Simulate, write, read
 #
-# A room is a function of named parameters, all in SI units; `record_every=0.1` records the state ten times a second, and
-# `contacts=True` also who touches whom. The same parameters and the same seed give the same run, to the last bit.
-# (The first run of a model compiles it, which takes some 20 s.)
+# A room is a function of named parameters, all in SI units; `record_every=0.1` records the state ten times a second,
+# and `contacts=True` also who touches whom. The same parameters and the same seed give the same run, to the last bit.
+# (The first run of a model compiles it, which takes some ten seconds.)
 
 # %%
 run = simulate(rooms.lin_room(v_d=1.6, N=80, seed=1, record_every=0.1, contacts=True))

@@ -36,6 +36,7 @@ class PowerLaw(NamedTuple):
 
 @laws.social.law(PowerLaw)
 def power_law(p: PowerLaw, gap: float) -> float:
+    """Repulsion at a gap, N."""
     return p.k / max(gap, 0.01) ** 2
 
 
