@@ -112,7 +112,7 @@ class Simulation:
     def _end_at_rest(self) -> None:
         """End the run where everybody is at rest for good."""
         state, parameters = self.state, self.parameters
-        if state["outcome"] != RUNNING or state["step"] == 0:
+        if state["outcome"] != RUNNING:
             return
         wait = (parameters.blocked_after - (state["step"] - state["last_out"])) * parameters.dt
         self._quiet_checks = self._quiet_checks + 1 if state["speed"] * wait < CREEP else 0
