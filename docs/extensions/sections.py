@@ -1,7 +1,8 @@
 """Docstrings as this project writes them, for autodoc.
 
-An entry of Parameters or Attributes says what it is in the line of its name, "v_d : desired speed, m/s"; Returns is
-prose. Both become lists and text of their own. Fields of a NamedTuple take their words from the comments beside them.
+An entry of Parameters or Attributes has its type in the line of its name, "v_d : float", and below what it is; or that
+in the same line, "v_d : desired speed, m/s". Returns is prose. Both become lists and text of their own. Fields of a
+NamedTuple take their words from the comments beside them, parameters of a law from their annotations.
 """
 
 import inspect
@@ -12,10 +13,13 @@ from typing import Any
 
 from sphinx.application import Sphinx
 
+from engine import laws
 from engine.kernel.dispatch import Generic
 
 ENTRY = re.compile(r"(?P<names>\w+(?:, \w+)*)(?: : (?P<words>.*))?$")
-FIELD = re.compile(r"^    (?P<name>\w+): (?P<type>\w+)[^#\n]*(?:#\s*(?P<words>.+))?$", re.MULTILINE)
+KIND = r"(?:float|int|bool|str|arrays?|None|[A-Z]\w+)"
+TYPE = re.compile(rf"(?:\([^)]*\) )?{KIND}(?:(?:, | or ){KIND})*")  # "(N,) float", "float, str or None"
+FIELD = re.compile(r"^    (?P<name>\w+): [^#\n]*#\s*(?P<words>.+)$", re.MULTILINE)
 TITLES = ("Parameters", "Attributes", "Returns", "Yields", "Raises")
 
 
@@ -28,6 +32,15 @@ def skipped(app: Sphinx, what: str, name: str, thing: Any, skip: bool, options: 
     """Leave out fields of NamedTuples, which the comments describe, and generic functions, which have a table."""
     field = type(thing).__name__ == "_tuplegetter"
     return True if field or isinstance(thing, Generic) else None
+
+
+def without_ranges(
+    app: Sphinx, what: str, name: str, thing: Any, options: Any, signature: str | None, returns: str | None
+) -> tuple[str | None, str | None]:
+    """The signature of a law without the ranges of its parameters, which are listed below."""
+    if not _is_a_law(thing):
+        return signature, returns
+    return f"({', '.join(f'{field}: float' for field in thing._fields)})", returns
 
 
 def _translated(lines: list[str]) -> Iterator[str]:
@@ -46,23 +59,32 @@ def _entries(body: list[str], errors: bool) -> Iterator[str]:
         entry = ENTRY.match(line)
         if entry:
             names = entry["names"].split(", ")
-            yield ", ".join(f":py:exc:`.{name}`" if errors else f"``{name}``" for name in names)
-            starts = following.lstrip()[:1].isupper()  # a type such as "float" stands as a sentence before what follows
-            yield from (f"    {entry['words']}" + "." * starts,) if entry["words"] else ()
+            term = ", ".join(f":py:exc:`.{name}`" if errors else f"``{name}``" for name in names)
+            words = entry["words"] or ""
+            typed = following.startswith(" ") and TYPE.fullmatch(words)
+            yield f"{term} : {words}" if typed else term
+            yield from (f"    {words}",) if words and not typed else ()
         else:
             yield line if not line or line.startswith(" ") else f"    {line}"
 
 
 def _fields(thing: Any) -> Iterator[str]:
-    if not (inspect.isclass(thing) and hasattr(thing, "_fields")):
-        return
-    for field in FIELD.finditer(inspect.getsource(thing)):
-        words = field["words"] or ("a pure number" if field["type"] == "float" else "")
-        yield from ("", f"``{field['name']}``", f"    {words}") if words else ()
+    if _is_a_law(thing):
+        for name, parameter in laws.parameters_of(thing).items():
+            unit = "" if parameter.unit == "1" else f", {parameter.unit}"
+            yield from ("", f"``{name}``", f"    {parameter.meaning}{unit}; a number {parameter.requirement}")
+    elif inspect.isclass(thing) and hasattr(thing, "_fields"):
+        for field in FIELD.finditer(inspect.getsource(thing)):
+            yield from ("", f"``{field['name']}``", f"    {field['words']}")
+
+
+def _is_a_law(thing: Any) -> bool:
+    return any(thing in call.laws for call in laws.KINDS.values() if inspect.isclass(thing))
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """Have autodoc ask here."""
     app.connect("autodoc-process-docstring", translate)
+    app.connect("autodoc-process-signature", without_ranges)
     app.connect("autodoc-skip-member", skipped)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

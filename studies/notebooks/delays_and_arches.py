@@ -27,11 +27,7 @@ STORE = Path("results/notebooks/parisi")
 plt.rcParams.update(figures.STYLE | {"figure.dpi": 150})
 
 # %%
-recorded = {
-    "record_every": 0.05,
-    "contacts": True,
-    "record": "positions",
-}  # places and contacts are all that is needed here
+recorded = {"record_every": 0.05, "contacts": True, "record": "positions"}  # positions and who touches whom
 grid = Grid(rooms.parisi_room, v_d=[2.0, 6.0], N=150, seed=range(6), **recorded)
 sweep(grid, STORE, jobs=2)
 ds = open_results(STORE)
@@ -50,7 +46,7 @@ mean.to_dataframe()[list(mean.data_vars)].round(2)
 # %% [markdown]
 # ## Delay survival
 #
-# The share of delays longer than t, over all runs of a speed, from the 10th to the 120th exit, where the crowd is
+# The fraction of delays longer than t, over all runs of a speed, from the 10th to the 120th exit, where the crowd is
 # dense. The bands are intervals of 95 % from a bootstrap that draws whole runs, for the delays of one run depend on
 # each other. A run that stayed blocked has a last wait that nobody ended: it is no delay, and `censored` counts such
 # runs; where that is not 0, the tail is a lower bound.
@@ -63,7 +59,7 @@ for v_d, colour in zip(ds.v_d.values, (figures.BLUE, figures.ORANGE), strict=Tru
     axis.fill_between(curve.time, curve.delay_survival_low, curve.delay_survival_high, color=colour, alpha=0.25, lw=0)
     label = f"{v_d:g} m/s: {int(curve.delays)} delays of {int(curve.runs)} runs, {int(curve.censored)} censored"
     axis.plot(curve.time, curve.delay_survival.where(curve.delay_survival > 0), color=colour, label=label)
-axis.set(xlabel="delay $t$ / s", ylabel="share of delays longer than $t$", yscale="log", ylim=(1e-3, 1.2))
+axis.set(xlabel="delay $t$ / s", ylabel="fraction of delays longer than $t$", yscale="log", ylim=(1e-3, 1.2))
 axis.legend(loc="upper right")
 plt.show()
 
@@ -79,7 +75,7 @@ files = [Store(STORE).file(run_key(grid.scenario(point))) for point in grid.poin
 counts = side_by_side([measures.contact_counts(read_run(file)) for file in files], grid)
 
 # %% [markdown]
-# Share of the time, from the start to each run's last exit, in which there is such a cluster. The interval is a
+# Fraction of the time, from the start to each run's last exit, in which there is such a cluster. The interval is a
 # bootstrap over whole runs; where no run, or each sample of all runs, has one, the open end is Wilson's for so many
 # runs.
 
@@ -95,10 +91,10 @@ large.to_dataframe().round(4)
 # %% [markdown]
 # ## Do delays end when arches break?
 #
-# The arch-clogging correlation (Eq. 6) is the share of delays that ended with somebody leaving whose arch had just
+# The arch-clogging correlation (Eq. 6) is the fraction of delays that ended with somebody leaving whose arch had just
 # broken. If arches cause the long delays, it is near 1 for long delays at the high speed. Bins without a delay are
-# empty, and bins with few say so by their interval: look at the numbers of delays before the share; delays of one run
-# alone have no interval at all.
+# empty, and bins with few say so by their interval: look at the numbers of delays before the fraction; delays of one
+# run alone have no interval at all.
 
 # %%
 clogging = measures.arch_clogging_correlation(counts).sel(kind="clean")

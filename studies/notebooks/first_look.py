@@ -28,7 +28,7 @@ plt.rcParams.update(figures.STYLE | {"figure.dpi": 150})
 #
 # A room is a function of named parameters, all in SI units; `record_every=0.1` records the state ten times a second,
 # and `contacts=True` also who touches whom. The same parameters and the same seed give the same run, to the last bit.
-# (The first run of a model compiles it, which takes some ten seconds.)
+# (The first run compiles the kernel for the laws of this model, some ten seconds.)
 
 # %%
 run = simulate(rooms.lin_room(v_d=1.6, N=80, seed=1, record_every=0.1, contacts=True))
@@ -82,8 +82,8 @@ gaps.to_series().nlargest(5).rename("longest gaps / s").to_frame()
 # ## One instant
 #
 # The crowd in the middle of the longest gap. Bodies are drawn at true size; colour is the sum of the normal contact
-# forces on each person (`exports.forces_on_persons`, which applies the laws of the model to the recorded state; the
-# social force is not in it). The black line, if there is one, is a blocking cluster: a chain of touching persons from
+# forces on each person (`exports.forces_on_persons` sums the recorded forces of the contacts; the social force is not
+# in it). The black line, if there is one, is a blocking cluster: a chain of touching persons from
 # one side of the door to the other.
 
 # %%

@@ -2,7 +2,7 @@
 # # A sweep and its states
 #
 # How does the desired speed decide what becomes of a crowd at a door? We run a small grid of Lin, Ma & Lo's room
-# (2016), eight desired speeds with six seeds each, and read three things from it: the mean flow, the share of runs
+# (2016), eight desired speeds with six seeds each, and read three things from it: the mean flow, the fraction of runs
 # that block, and the states of the crowd: smooth, transition, phase separation.
 #
 # Six seeds are few, so that this notebook runs in a minute: intervals are wide, and some cells may stay undecided.
@@ -26,8 +26,8 @@ plt.rcParams.update(figures.STYLE | {"figure.dpi": 150})
 # ## Run the grid
 #
 # Lists are axes, single values constants. The store is a folder with one file a run: a sweep that was interrupted
-# goes on where it stopped, and a second call runs nothing. The same seed means the same bodies and places at every
-# speed.
+# goes on where it stopped, and a second call runs nothing. The same seed means the same bodies and positions at
+# every speed.
 
 # %%
 grid = Grid(rooms.lin_room, v_d=[0.6, 0.8, 1.0, 1.2, 1.4, 1.6, 1.8, 2.0], N=200, seed=range(6))
@@ -47,10 +47,10 @@ ended = {word: measures.outcome_is(ds, word).sum("seed").to_series() for word in
 pd.DataFrame(ended).loc[:, lambda table: table.any()]
 
 # %% [markdown]
-# ## Blocked share
+# ## Blocked fraction
 #
-# The share of runs that blocked, with Wilson's interval of 95 % for so many runs. With six seeds, no blocked run at
-# all still allows a share of up to two fifths: the upper limit says so.
+# The fraction of runs that blocked, with Wilson's interval of 95 % for so many runs. With six seeds, no blocked run
+# at all still allows a fraction of up to two fifths: the upper limit says so.
 
 # %%
 share = measures.blocked_share(ds)
@@ -62,7 +62,7 @@ share[columns].to_dataframe()[columns].round(2)
 #
 # Persons over clearance time. A small dot is a run, the large one the mean over the runs that got out, with a
 # bootstrap interval of 95 % over runs; blocked runs lie at zero as dots and are not in the mean. Means of few
-# remaining runs are those of the lucky ones: read them beside the blocked share below.
+# remaining runs are those of the lucky ones: read them beside the blocked fraction below.
 
 # %%
 facts = measures.mean_flow(ds)
@@ -78,7 +78,7 @@ upper.set(ylabel="mean flow / s$^{-1}$", ylim=(-0.05, 1.4))
 upper.legend()
 arms = [share.blocked_share - share.blocked_share_low, share.blocked_share_high - share.blocked_share]
 lower.errorbar(ds.v_d, share.blocked_share, arms, fmt="s", ms=4, color=figures.ORANGE)
-lower.set(xlabel="desired speed $v_d$ / m s$^{-1}$", ylabel="blocked share, 95 %", ylim=(-0.05, 1.05))
+lower.set(xlabel="desired speed $v_d$ / m s$^{-1}$", ylabel="blocked fraction, 95 %", ylim=(-0.05, 1.05))
 plt.show()
 
 # %%

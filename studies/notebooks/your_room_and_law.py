@@ -8,10 +8,10 @@
 # %% [markdown]
 # ## A law of your own
 #
-# A law of force is a small type with its parameters, and one function with its formula; the engine compiles it into its
-# time loop. It may stand in any file, or in a notebook. The law here: a repulsion k/gap^2 between persons, held at its
-# value at 1 cm for smaller gaps. How far it acts and how stiff it is follow from the formula. A run's key knows the
-# law's code: an edited law runs anew.
+# A law of force is one function beside a small type with its parameters; the engine compiles it into its time loop. It
+# may stand in any file, or in a notebook. The law here: a repulsion k/gap^2 between persons, held at its value at 1 cm
+# for smaller gaps. Its cutoff and its stiffness follow from the formula. A hash of the law's code is part of a run's
+# key: after an edit of the law, the sweep below runs anew.
 
 # %%
 from pathlib import Path
@@ -19,7 +19,7 @@ from typing import Annotated, NamedTuple
 
 import matplotlib.pyplot as plt
 
-from engine import Crowd, Exit, Options, Scenario, Scene, laws, models, simulate
+from engine import Crowd, Exit, Scenario, Scene, laws, models, simulate
 from studies import measures
 from studies.presentation import figures
 from sweep import Grid, open_results, sweep
@@ -44,9 +44,10 @@ def power_law(p: PowerLaw, gap: float) -> float:
 # ## A room of your own
 #
 # A room is any function of named parameters that returns a `Scenario`: walls and exits, a crowd, a model, a seed.
-# Each keyword may then be an axis of a sweep. Bodies, friction and drive are those of Lin, Ma & Lo's model; only the
-# social force between persons is exchanged. A scenario is checked when it is made: a door narrower than a person, or
-# a time step too long for the law, is refused with a remedy.
+# Each keyword, and each of the options of a run (`engine.Options`), may then be an axis or a constant of a sweep.
+# Bodies, friction and drive are those of Lin, Ma & Lo's model; only the social force between persons is exchanged. Step
+# and integrator follow from the accuracy that is asked for, 2 % of the statistics by default. A scenario is checked
+# when it is made: a door narrower than a person, or a time step too long for the law, is refused with a remedy.
 
 # %%
 LAWS = {"exponential": models.lin_dem().social, "power law": PowerLaw(k=0.03)}
@@ -62,13 +63,9 @@ def my_room(v_d: float = 1.2, seed: int = 0, door: float = 4.0, law: str = "expo
         (8.0, 8.0, 8.0, high),
         (8.0, low, 8.0, 0.0),
     )
-    return Scenario(
-        scene=Scene(walls, (Exit((8.0, low), (8.0, high), outward=(1.0, 0.0)),)),
-        crowd=Crowd.uniform(N, (0.0, 8.0, 0.0, 8.0), radius=(0.25, 0.35), mass=(60.0, 80.0), v_d=v_d),
-        model=models.lin_dem()._replace(social=LAWS[law]),
-        options=Options(dt=1e-3, force_tolerance=0.1, integrator="velocity_verlet", blocked_after=60.0),
-        seed=seed,
-    )
+    scene = Scene(walls, (Exit((8.0, low), (8.0, high), outward=(1.0, 0.0)),))
+    crowd = Crowd.uniform(N, (0.0, 8.0, 0.0, 8.0), radius=(0.25, 0.35), mass=(60.0, 80.0), v_d=v_d)
+    return Scenario(scene, crowd, models.lin_dem()._replace(social=LAWS[law]), seed=seed)
 
 
 print(simulate(my_room(law="power law")))
@@ -76,7 +73,7 @@ print(simulate(my_room(law="power law")))
 # %% [markdown]
 # ## Sweep it
 #
-# Two places of the door, two laws, eight seeds. The same seed means the same bodies in the same places in all four
+# Two places of the door, two laws, eight seeds. The same seed means the same bodies and positions in all four
 # cells.
 
 # %%
@@ -86,7 +83,7 @@ ds = open_results(FOLDER / "runs")
 
 # %% [markdown]
 # Mean clearance time of the runs that got out, with a bootstrap interval of 95 %; `runs` is how many these are and
-# `censored` how many did not finish. The blocked share beside it has Wilson's interval.
+# `censored` how many did not finish. The blocked fraction beside it has Wilson's interval.
 
 # %%
 facts = measures.clearance(ds)
@@ -122,5 +119,5 @@ difference = (times.sel(door=1.1) - times.sel(door=4.0)).rename("near_corner_les
 measures.mean_over(difference, censored=facts.censored.any("door")).to_dataframe().round(1)
 
 # %% [markdown]
-# An interval that holds zero says that these runs do not tell the two places apart; more seeds would. To keep the
-# law, put it into a file of its own: `docs/law.md` has the recipe.
+# An interval that holds zero says that these runs do not tell the two places apart; more seeds would. To keep room
+# and law, put both into a file, from which they are run and swept: `docs/room.md` and `docs/law.md`.

@@ -2,6 +2,7 @@
 
 import importlib.util
 import math
+import sys
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -165,3 +166,17 @@ def test_two_laws_of_the_same_numbers_have_each_their_own_cutoff_and_step():
     assert laws.cutoff(mine.model.social, 0.3) == pytest.approx(10.0 * laws.cutoff(ours.model.social, 0.3))
     stiff = [scenario(kind(3e6, 0.05)).numerics.dt for kind in (laws.Exponential, Shifted)]
     assert stiff[1] > stiff[0]
+
+
+def test_the_fingerprint_of_a_law_follows_what_it_takes_from_a_module_of_the_users(tmp_path, monkeypatch):
+    """`my_constants.K` and `my_constants.scale(gap)`, by the name of the module."""
+    text = "import math\nimport my_constants\n" + FILE.replace(
+        "return p.A", "return my_constants.K * my_constants.scale(1.0) * math.exp(0.0) * p.A"
+    )
+    marks = []
+    for K, factor in ((1.0, 1.0), (2.0, 1.0), (1.0, 3.0), (1.0, 1.0)):
+        constants = f"from numba import njit\nK = {K}\n\n@njit\ndef scale(x):\n    return {factor} * x\n"
+        monkeypatch.setitem(sys.modules, "my_constants", loaded(tmp_path / "my_constants.py", constants))
+        marks.append(scenario(loaded(tmp_path / "mine.py", text).PowerLaw(300.0, 0.2, 4.0)).law_fingerprint)
+    assert marks[0] == marks[3]
+    assert len(set(marks)) == 3

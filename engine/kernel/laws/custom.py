@@ -8,6 +8,7 @@ code of an edit before.
 import dis
 import functools
 import hashlib
+import sys
 import types
 from collections import namedtuple
 from collections.abc import Callable, Hashable
@@ -23,6 +24,7 @@ GENERICS: tuple[Generic, ...] = (*dict.fromkeys(KINDS.values()), viscosity)
 PLAIN = (bool, int, float, complex, str, bytes, type(None))
 PACKAGE = __name__.partition(".")[0]
 DIGITS = 12  # of a hash
+FIXED_MODULES = sys.stdlib_module_names | {"numpy", "numba", PACKAGE}  # told by versions, and by the fingerprint
 
 
 class UntraceableError(TypeError):
@@ -104,15 +106,27 @@ def _code_of(function: Any) -> bytes:
             else:
                 add(constant, "a constant")
         cells = dict(zip(code.co_freevars, function.__closure__ or (), strict=False))
+        value: Any = None
         for instruction in dis.get_instructions(code):
             name = instruction.argval
             if instruction.opname == "LOAD_GLOBAL" and name in function.__globals__:
-                add(function.__globals__[name], name)
+                value = function.__globals__[name]
             elif instruction.opname == "LOAD_DEREF" and name in cells:
-                add(cells[name].cell_contents, name)
+                value = cells[name].cell_contents
+            elif instruction.opname in ("LOAD_ATTR", "LOAD_METHOD") and _is_a_users(value):
+                value = getattr(value, name)  # of what stands in a module
+            else:
+                value = None
+                continue
+            add(value, name)
 
     add(function, function.__name__)
     return digest.digest()
+
+
+def _is_a_users(value: Any) -> bool:
+    """Whether this is a module that an edit may change: none of Python's, numba's, numpy's or the engine's."""
+    return isinstance(value, types.ModuleType) and value.__name__.partition(".")[0] not in FIXED_MODULES
 
 
 @functools.cache
