@@ -85,7 +85,7 @@ class Scenario:
 
     def to_json(self) -> str:
         """The scenario as readable JSON, from which `from_json` makes it again."""
-        return json.dumps(_plain(self._resolved()), sort_keys=True)
+        return json.dumps(self._described(), sort_keys=True)
 
     @staticmethod
     def from_json(text: str) -> "Scenario":
@@ -94,11 +94,14 @@ class Scenario:
 
     def canonical(self) -> str:
         """JSON with every float exact and every default filled in: equal for equal scenarios only."""
-        return json.dumps(_exact(_plain(self._resolved())), sort_keys=True, separators=(",", ":"))
+        return json.dumps(_exact(self._described()), sort_keys=True, separators=(",", ":"))
 
-    def _resolved(self) -> "Scenario":
-        """The scenario whose options name the numerics that hold, whatever they followed from."""
-        return self.with_options(numerics=Options.numerics, accuracy=Options.accuracy, **self.numerics._asdict())
+    def _described(self) -> dict[str, Any]:
+        """All parts; the options name the numerics that hold, whatever they followed from."""
+        numerics, accuracy = Options.numerics, Options.accuracy
+        options = replace(self.options, numerics=numerics, accuracy=accuracy, **self.numerics._asdict())
+        plain: dict[str, Any] = _plain(self)
+        return plain | {"options": _plain(options)}
 
 
 def _check_exits(scene: Scene, largest_radius: float) -> None:

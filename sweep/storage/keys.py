@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from contextlib import suppress
 from typing import NamedTuple
 
-from engine import Scenario
 from engine.fingerprint import package_fingerprint
 from sweep import schema
 from sweep.errors import CannotWrite
@@ -41,14 +40,13 @@ def key_mark(grid: Grid) -> str:
     return schema.key_of(grid.to_json(), engine=package_fingerprint())
 
 
-def _wanted(canonical: str) -> Wanted:
-    return Wanted(schema.key_of(canonical), schema.scenario_hash(canonical))
+def _wanted(canonical: str, engine: str = "") -> Wanted:
+    return Wanted(schema.key_of(canonical, engine=engine), schema.scenario_hash(canonical))
 
 
 def _of_each(grid: Grid) -> list[Wanted]:
     """Keys of all points of a room of one's own."""
-    scenarios: Iterator[Scenario] = map(grid.scenario, grid.points())
-    return [Wanted(schema.run_key(s), schema.scenario_hash(s.canonical())) for s in scenarios]
+    return [_wanted(s.canonical(), schema.engine_of(s)) for s in map(grid.scenario, grid.points())]
 
 
 def _canonical(grid: Grid) -> Iterator[str]:
