@@ -19,7 +19,7 @@ from engine.kernel.laws import (
     Rotation,
     Viscous,
 )
-from engine.kernel.laws.custom import UntraceableError, fingerprint_of, is_custom
+from engine.kernel.laws.custom import UntraceableError, fingerprint_of, is_custom, stands_outside
 
 
 class Model(NamedTuple):
@@ -224,7 +224,8 @@ def _validated(kind: str, law: Any) -> Any:
     remedy = f"choose one of {names}, or register one with @laws.{laws.KINDS[kind].__name__}.law"
     require(type(law) in known, kind, repr(law), "is not a law of this kind", remedy)
     if is_custom(law):
-        taken = any(type(law).__name__ == p.__name__ for k in laws.KINDS.values() for p in k.laws if _is_ours(p))
+        ours = [p.__name__ for call in laws.KINDS.values() for p in call.laws if not stands_outside(p)]
+        taken = type(law).__name__ in ours
         require(not taken, kind, type(law).__name__, "has the name of a law of the engine", "give it another")
     law_type: Any = type(law)
     for name, parameter in laws.parameters_of(law_type).items():
@@ -232,7 +233,3 @@ def _validated(kind: str, law: Any) -> Any:
         value = number(thing, getattr(law, name), remedy)
         require(value in parameter, thing, value, f"is not a finite number {parameter.requirement}", remedy)
     return type(law)(*map(float, law))
-
-
-def _is_ours(parameters: type) -> bool:
-    return parameters.__module__.partition(".")[0] == "engine"

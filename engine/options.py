@@ -181,9 +181,6 @@ def _round_down(step: float) -> float:
     return float(f"{max(m for m in (1, 2, 5) if m * power <= step * (1 + 1e-9)) * power:.3g}")
 
 
-NAMES = tuple(field.name for field in fields(Options))
-
-
 def with_options(room: Callable[..., Any]) -> Callable[..., Any]:
     """Give a room the options as keywords, besides its own; one of the same name stays the room's.
 

@@ -7,9 +7,10 @@ from engine.kernel.forces import forces
 from engine.kernel.integrators.interface import begin, correct, history_offset, predict
 from engine.kernel.laws import is_present
 from engine.kernel.pair_list import rebuild
+from engine.kernel.stability import MAX_HALVINGS
 from engine.kernel.state import ALL_OUT, BLOCKED, RUNNING, TIME_LIMIT, UNSTABLE
 
-MAX_SUBSTEPS = 64
+MAX_SUBSTEPS = 2**MAX_HALVINGS
 STRIDE = 0.2  # of the smallest radius: how far a person may move in one go
 LEAST_ROOM = 0.05  # of the smallest radius; with less left to be pressed through, strides do not get shorter
 

@@ -33,7 +33,12 @@ class UntraceableError(TypeError):
 
 def is_custom(law: Any) -> bool:
     """Whether a law's parameters are of a type that stands outside the engine."""
-    return type(law).__module__.partition(".")[0] != PACKAGE
+    return stands_outside(type(law))
+
+
+def stands_outside(parameters: type) -> bool:
+    """Whether a type of parameters stands outside the engine."""
+    return parameters.__module__.partition(".")[0] != PACKAGE
 
 
 def fingerprint_of(laws: Any) -> str:

@@ -6,7 +6,7 @@ class Exponential(NamedTuple):
 
 import functools
 import math
-from typing import Annotated, Any, NamedTuple, get_type_hints
+from typing import Any, NamedTuple, get_type_hints
 
 
 class Parameter(NamedTuple):
@@ -57,9 +57,4 @@ def parameters_of(law: type) -> dict[str, Parameter]:
 
 
 def _parameter(hint: Any) -> Parameter:
-    if getattr(hint, "__origin__", None) is None or not hasattr(hint, "__metadata__"):
-        return ANY
-    return next((known for known in hint.__metadata__ if isinstance(known, Parameter)), ANY)
-
-
-__all__ = ["ANY", "Annotated", "Parameter", "above", "at_least", "between", "parameters_of"]
+    return next((known for known in getattr(hint, "__metadata__", ()) if isinstance(known, Parameter)), ANY)
