@@ -54,8 +54,7 @@ class Grid:
 
     def __init__(self, room: Room | str, /, *, common_random_numbers: Any = True, **keywords: Any) -> None:
         self._describe(_room(room), _name(room), common_random_numbers, keywords)
-        for point in self._telling():
-            self.scenario(point)
+        self._try_points()
 
     def _describe(self, room: Room, name: str, common_random_numbers: Any, keywords: Mapping[str, Any]) -> None:
         self.room, self.name = room, name
@@ -73,8 +72,7 @@ class Grid:
         """The same grid with other values of some axes."""
         other = Grid.__new__(Grid)
         other._describe(self.room, self.name, self.common_random_numbers, {**self.axes, **axes, **self.constants})
-        for point in other._telling():
-            other.scenario(point)
+        other._try_points()
         return other
 
     def first_seeds(self, numbers: Mapping[Cell, int]) -> "Grid":
@@ -185,6 +183,11 @@ class Grid:
         digest = hashlib.sha256(json.dumps([self.name, exact], sort_keys=True).encode()).digest()
         cell = np.frombuffer(digest, "<u4").tolist()
         return {SEED: int(np.random.SeedSequence(number, spawn_key=cell).generate_state(1, np.uint64)[0] >> 1)}
+
+    def _try_points(self) -> None:
+        """Refuse a grid of which a point is no scenario."""
+        for point in self._telling():
+            self.scenario(point)
 
     def _telling(self) -> Iterator[Point]:
         """Points of which all are scenarios if these are."""

@@ -48,14 +48,14 @@ def forces_on_persons(run: xr.Dataset) -> xr.Dataset:
     BadInput
         If the run was not recorded in this way.
     """
-    acting = contacts(run)
+    recorded = contacts(run)
     shape = run.sizes["sample"], run.sizes["person"]
     total, squeeze = np.zeros((*shape, 2)), np.zeros(shape)
-    pairs = acting.j >= 0
-    for who, sign, of in ((acting.i, 1.0, slice(None)), (acting.j, -1.0, pairs)):
-        at = acting.sample[of], who[of]
-        np.add.at(total, at, sign * acting.force[of])
-        np.add.at(squeeze, at, np.abs(acting.F_n[of]))
+    pairs = recorded.j >= 0
+    for who, sign, of in ((recorded.i, 1.0, slice(None)), (recorded.j, -1.0, pairs)):
+        at = recorded.sample[of], who[of]
+        np.add.at(total, at, sign * recorded.force[of])
+        np.add.at(squeeze, at, np.abs(recorded.F_n[of]))
     present = np.isfinite(run["x"].transpose("sample", "person").values)
     around = 2.0 * np.pi * run["radius"].values
     forces = {
@@ -81,14 +81,14 @@ def forces_on_walls(run: xr.Dataset) -> xr.Dataset:
     BadInput
         As `forces_on_persons`.
     """
-    acting = contacts(run)
-    at_wall = acting.j < 0
+    recorded = contacts(run)
+    at_wall = recorded.j < 0
     walls = run["wall"].transpose("wall", "end").values
     shape = run.sizes["sample"], len(walls)
     total, normal = np.zeros((*shape, 2)), np.zeros(shape)
-    at = acting.sample[at_wall], -1 - acting.j[at_wall]
-    np.add.at(total, at, -acting.force[at_wall])
-    np.add.at(normal, at, np.abs(acting.F_n[at_wall]))
+    at = recorded.sample[at_wall], -1 - recorded.j[at_wall]
+    np.add.at(total, at, -recorded.force[at_wall])
+    np.add.at(normal, at, np.abs(recorded.F_n[at_wall]))
     length = np.hypot(walls[:, 2] - walls[:, 0], walls[:, 3] - walls[:, 1])
     forces = {
         "wall_force_x": (total[..., 0], "N", "x component of the contact forces on the wall"),

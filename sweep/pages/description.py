@@ -32,8 +32,9 @@ def parameters_of(run: xr.Dataset) -> Pairs:
     scenario = _scenario(run)
     laws = scenario.get("model", {})
     described = [(kind, _spoken(law)) for kind, law in laws.items() if isinstance(law, dict) and kind != "is"]
-    rest = [(part, _spoken(scenario[part] | {"is": ""})) for part in ["options"] if part in scenario]
-    return [*own, *((kind.replace("_", " "), text) for kind, text in described), *rest, ("seed", _seed(scenario))]
+    if "options" in scenario:
+        described.append(("options", _spoken(scenario["options"] | {"is": ""})))
+    return [*own, *((kind.replace("_", " "), text) for kind, text in described), ("seed", _seed(scenario))]
 
 
 def provenance_of(run: xr.Dataset, contacts: Contacts, every: int) -> Pairs:
