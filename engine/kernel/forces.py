@@ -146,13 +146,13 @@ def _wall_social_forces(model, tolerance, scene, persons, pairs, first, count, s
 @step_function
 def _list_contacts(friction_law, persons, pairs, contacts, first, count, scratch, state, at_walls):
     """List the pairs of a block that touch, those at walls behind the others; the springs of the rest end."""
-    s, touching, springs, number = scratch.block, scratch.touching, pairs.displacement, 0
+    s, touching, springs, number = scratch.block, scratch.touching, pairs.displacement[first : first + count], 0
     for p in range(count):  # without a branch: most pairs do not touch
         touching[number] = p
         number += s[2 * BLOCK + p] < 0.0
     if has_history(friction_law):
         for p in range(count):
-            springs[first + p] = springs[first + p] if s[2 * BLOCK + p] < 0.0 else 0.0
+            springs[p] = springs[p] if s[2 * BLOCK + p] < 0.0 else 0.0
     for t in range(number):
         p = touching[t]
         i, j, c = pairs.i[first + p], pairs.j[first + p], contacts[state.contacts + state.wall_contacts]
