@@ -10,7 +10,7 @@ from engine import crowd as crowds
 from engine import models
 from engine.errors import require
 from engine.kernel import laws
-from engine.kernel.laws.custom import cached_by_laws, fingerprint_of
+from engine.kernel.laws.custom import cached_by_laws, fingerprint_of, stands_outside
 from engine.kernel.laws.social_force import is_repulsion
 from engine.models import Model
 from engine.options import Numerics, Options, longest_step, numerics_of
@@ -188,4 +188,6 @@ def _built(plain: Any) -> Any:
 
 
 def _laws() -> dict[str, type[NamedTuple]]:
-    return {p.__name__: p for call in laws.KINDS.values() for p in call.laws}
+    """Laws by name; one of the engine's stands before others that were registered under its name."""
+    kinds = [kind for call in laws.KINDS.values() for kind in call.laws]
+    return {kind.__name__: kind for kind in sorted(kinds, key=stands_outside, reverse=True)}

@@ -144,7 +144,7 @@ def _coloured(run: xr.Dataset, contacts: Contacts, colour: str) -> tuple[np.ndar
     if colour == "speed":
         values = speeds(run)
         return values, common_top(values, 0.1)
-    known = contacts.force is not None
-    require(known, "colour", "'force'", "needs a law of contact that this engine knows", "choose speed")
+    remedy = "record with contacts and record full, or choose speed"
+    require(contacts.force is not None, "colour", "'force'", "needs contact forces, which this run lacks", remedy)
     values = force_on_each(contacts, run.sizes["person"])
     return values, common_top(values, 100.0)

@@ -119,6 +119,8 @@ def test_a_law_under_the_name_of_one_of_the_engines_is_refused(tmp_path):
     law = loaded(tmp_path / "mine.py", FILE.replace("PowerLaw", "Exponential")).Exponential(300.0, 0.2, 4.0)
     with pytest.raises(BadInput, match="has the name of a law of the engine"):
         scenario(law)
+    engines = scenario(laws.Exponential(300.0, 0.2))
+    assert Scenario.from_json(engines.to_json()).model == engines.model  # the text of a stored run means the engine's
 
 
 class Quadratic(NamedTuple):

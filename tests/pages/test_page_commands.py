@@ -107,9 +107,10 @@ def test_a_film_shows_those_who_are_there_between_their_positions(walk: xr.Datas
 
 
 @pytest.mark.skipif(not FFMpegWriter.isAvailable(), reason="no ffmpeg on this machine: apt-get install ffmpeg")
-def test_an_mp4_is_one(file: Path, tmp_path: Path) -> None:
-    film = tmp_path / "run.mp4"
-    assert jamsweep("view", file, "--mp4", film, "--rate", 10, "--colour", "force") == 0
+def test_an_mp4_is_one(tmp_path: Path) -> None:
+    path, film = tmp_path / "run.nc", tmp_path / "run.mp4"
+    write_run(simulate(rooms.lin_room(record_every=0.1, contacts=True, **SMALL)), path)
+    assert jamsweep("view", path, "--mp4", film, "--rate", 10, "--colour", "force") == 0
     assert film.read_bytes()[4:8] == b"ftyp"
 
 
@@ -120,6 +121,9 @@ def test_a_film_that_cannot_be_is_refused(
     film = tmp_path / "run.mp4"
     assert "needs ffmpeg, which is not installed: install it, or write a .gif" in refused(
         capsys, "view", file, "--mp4", film
+    )
+    assert "colour 'force' needs contact forces, which this run lacks" in refused(
+        capsys, "view", file, "--gif", tmp_path / "x.gif", "--colour", "force"
     )
     assert "does not end in .gif" in refused(capsys, "view", file, "--gif", film)
     assert "rate 0.0 is not above 0" in refused(capsys, "view", file, "--gif", tmp_path / "x.gif", "--rate", 0)
