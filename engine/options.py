@@ -5,16 +5,17 @@ import inspect
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields
-from typing import Any, NamedTuple, get_type_hints
+from typing import Any, NamedTuple, TypeVar, get_type_hints
 
 from engine.errors import number, require
 from engine.kernel.integrators import INTEGRATORS
 from engine.kernel.laws.custom import cached_by_laws
 from engine.kernel.stability import CAUSES, step_limits
 
+Made = TypeVar("Made")
 RECORDS = ("full", "positions")  # what of each person is recorded
 ASSUMED_OVERLAP = 0.2  # of the smallest radius: what the step must be able to follow
-LONGEST_STEP = 1.0  # s, where laws set no limit
+STABLE = 0.75  # of the longest stable step: what is taken of it
 
 
 class Numerics(NamedTuple):
@@ -27,27 +28,31 @@ class Numerics(NamedTuple):
     force_tolerance : float
         The social force ends, without a jump, where it has fallen to this, N.
     integrator : str
-        "velocity_verlet" (as the papers print it), "predictor" (second order) or "semi_implicit" (long steps), see
-        `engine.kernel.integrators`.
+        "velocity_verlet" (as the papers print it), "predictor" (second order) or "theta" (second order, long steps),
+        see `engine.kernel.integrators`.
+    solver_tolerance : float
+        Change of a velocity at which "theta" counts its contacts as solved, m/s.
     """
 
     dt: float
     force_tolerance: float
     integrator: str
+    solver_tolerance: float = 1e-3
 
 
 class Level(NamedTuple):
     """How an accuracy is reached."""
 
     integrator: str
-    fraction: float  # of the longest stable step
+    longest_step: float  # s
     force_tolerance: float  # N
+    solver_tolerance: float  # m/s
 
 
 LEVELS = {
-    "2%": Level("semi_implicit", 0.36, 0.3),
-    "1mm": Level("semi_implicit", 0.18, 1e-2),
-    "0.1mm": Level("predictor", 0.45, 1e-3),
+    "2%": Level("theta", 5e-3, 0.3, 1e-3),
+    "1mm": Level("theta", 5e-3, 1e-2, 1e-4),
+    "0.1mm": Level("theta", 1e-3, 1e-3, 1e-5),
 }
 ACCURATE, PAPER = "accurate", "paper"
 
@@ -64,8 +69,8 @@ class Options:
         Error that is tolerated: "2%", bias of the statistics (mean clearance time, blocked fraction, mean delay);
         "1mm" or "0.1mm", root mean square error of the positions before chaos. `make study-accuracy` measures what
         they leave.
-    dt, force_tolerance, integrator : float, float, str or None
-        Where given they hold instead, see `Numerics` (s, N).
+    dt, force_tolerance, integrator, solver_tolerance : float, float, str, float or None
+        Where given they hold instead, see `Numerics` (s, N, m/s).
     skin : float
         How much farther than they interact pairs are listed, m; 0: adapted to how fast people move, for speed (changes
         a run by rounding only).
@@ -95,6 +100,7 @@ class Options:
     dt: float | None = None
     force_tolerance: float | None = None
     integrator: str | None = None
+    solver_tolerance: float | None = None
     skin: float = 0.0
     blocked_after: float = 120.0
     time_limit: float = 1000.0
@@ -109,7 +115,7 @@ class Options:
         _be_a_word(self, "record", RECORDS)
         if self.integrator is not None:
             _be_a_word(self, "integrator", tuple(INTEGRATORS))
-        for name in ("dt", "force_tolerance", "blocked_after", "time_limit"):
+        for name in ("dt", "force_tolerance", "solver_tolerance", "blocked_after", "time_limit"):
             _be_a_number(self, name, may_be_zero=False)
         for name in ("skin", "record_every"):
             _be_a_number(self, name, may_be_zero=True)
@@ -139,7 +145,7 @@ def _be_a_number(options: Options, name: str, may_be_zero: bool) -> None:
 def numerics_of(options: Options, model: Any, crowd: Any, paper: Numerics | None) -> Numerics:
     """Step, force tolerance and integrator of a scenario, from the accuracy where they are not given.
 
-    A given integrator without a step takes that of the accuracy's fraction of its own longest step.
+    A given integrator without a step takes that of the accuracy, or what is stable of it.
 
     Raises
     ------
@@ -150,16 +156,17 @@ def numerics_of(options: Options, model: Any, crowd: Any, paper: Numerics | None
         known = "are not known for this room"
         require(paper is not None, "numerics", "'paper'", known, "choose 'accurate', or give dt and integrator")
         assert paper is not None
-        dt, tolerance, integrator = paper
+        dt, tolerance, integrator, solver_tolerance = paper
     else:
         level = LEVELS[options.accuracy]
         integrator, tolerance = options.integrator or level.integrator, level.force_tolerance
-        longest = min(longest_step(model, crowd, integrator)[0], LONGEST_STEP)
-        dt = _round_down(level.fraction * longest)
+        solver_tolerance = level.solver_tolerance
+        dt = _round_down(min(STABLE * longest_step(model, crowd, integrator)[0], level.longest_step))
     return Numerics(
         dt if options.dt is None else options.dt,
         tolerance if options.force_tolerance is None else options.force_tolerance,
         options.integrator or integrator,
+        options.solver_tolerance or solver_tolerance,
     )
 
 
@@ -176,12 +183,12 @@ def _longest_step(model: Any, integrator: str, radius: float, mass: float) -> tu
 
 
 def _round_down(step: float) -> float:
-    """The largest of 1, 2, 5 times a power of ten that is not above."""
+    """To one significant digit."""
     power = 10.0 ** math.floor(math.log10(step) + 1e-9)
-    return float(f"{max(m for m in (1, 2, 5) if m * power <= step * (1 + 1e-9)) * power:.3g}")
+    return float(f"{math.floor(step / power + 1e-9) * power:.1g}")
 
 
-def with_options(room: Callable[..., Any]) -> Callable[..., Any]:
+def with_options(room: Callable[..., Made]) -> Callable[..., Made]:
     """Give a room the options as keywords, besides its own; one of the same name stays the room's.
 
     @with_options
@@ -201,7 +208,7 @@ def with_options(room: Callable[..., Any]) -> Callable[..., Any]:
     @functools.wraps(room)
     def wrapped(*args: Any, **keywords: Any) -> Any:
         given = {p.name: keywords.pop(p.name) for p in added if p.name in keywords}
-        scenario = room(*args, **keywords)
+        scenario: Any = room(*args, **keywords)
         return scenario.with_options(**given) if given else scenario
 
     parameters = sorted([*own.parameters.values(), *added], key=lambda p: p.kind)  # "**keywords" come last

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from engine.rooms import ROOMS
-from studies.precision import cells, conservation, levels, positions, savings
+from studies.precision import cells, conservation, friction, levels, positions, savings
 from studies.precision.clock import compile_all, spread
 from studies.precision.drawing import draw
-from studies.precision.page import Results, page, tables
+from studies.precision.page import Results, page, raw, tables
 from studies.precision.plans import FULL, QUICK, Plan, times_more
 from studies.precision.settings import Setting
 from sweep.report import tell
@@ -35,11 +35,13 @@ def measure(plan: Plan, store: Path, jobs: int) -> Results:
     drifts = conservation.measure(plan.integrators, plan.steps, plan.gas_time, jobs)
     _say("statistics of whole runs")
     judged = [j for cell in plan.cells for j in cells.judge(cell, store, jobs)]
+    _say("friction at a step and at a quarter of it")
+    frictions = friction.measure(plan.cells, plan.friction_seeds, jobs)
     _say("whole runs with the paper's numerics and the default")
     speed_ups = spread(levels.speed_up, plan.speed_ups, jobs)
     _say("what skipping saves")
     saved = savings.measure(plan.stretch, plan.repeats, plan.compiling)
-    return Results(found, drifts, judged, levels.levels(found, judged), speed_ups, saved)
+    return Results(found, drifts, judged, frictions, levels.levels(found, judged), speed_ups, saved)
 
 
 def main(quick: bool = False, jobs: int = 2, docs: bool = False, more: int = 1) -> None:
@@ -47,7 +49,7 @@ def main(quick: bool = False, jobs: int = 2, docs: bool = False, more: int = 1) 
 
     Parameters
     ----------
-    docs : also write docs/accuracy.md and its figures
+    docs : also write docs/accuracy.md, docs/accuracy_tables.md and their figures
     more : times the seeds of the statistics
     """
     begin = time.monotonic()
@@ -57,10 +59,14 @@ def main(quick: bool = False, jobs: int = 2, docs: bool = False, more: int = 1) 
     text = tables(results)
     options = f"{' QUICK=1' if quick else ''}{f' MORE={more}' if more > 1 else ''}"
     command = f"make study-accuracy{options} JOBS={jobs}{' DOCS=1' if docs else ''}"
-    written = page(text, command, time.monotonic() - begin)
+    written = {
+        "accuracy.md": page(results, command),
+        "accuracy_tables.md": raw(text, command, time.monotonic() - begin),
+    }
     for place in [folder, *([DOCS] if docs else [])]:
         draw(results, place)
-        (place / "accuracy.md").write_text(written, "utf-8")
+        for name, content in written.items():
+            (place / name).write_text(content, "utf-8")
     print(text, f"\n{folder / 'accuracy.md'}", sep="\n")
     if broken := results.broken():
         sys.exit("broken: " + "; ".join(broken))

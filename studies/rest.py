@@ -12,7 +12,15 @@ from studies.presentation.verdicts import columns
 from studies.variants.room import variant_room
 
 FOLDER = Path("results/rest")
-VARIANTS = ("RK", "RS", "W", "W01", "R02", "WK", "WR", "B")  # of what the friction of Lin's model may be
+VARIANTS = (  # of what the friction of Lin's model may be
+    "kept 0.3",
+    "reset",
+    "reset to zero, 1 ms",
+    "reset, Coulomb walls",
+    "reset, reset walls",
+    "kept 0.5",
+    "kept 0.5, kept walls",
+)
 SLOW = 20.0  # s, a wait that ended
 HEAD = ("runs", "tested", "blocked", "slow", "frozen early", "agree", "simulated time saved")
 

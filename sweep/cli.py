@@ -14,6 +14,7 @@ from engine import FINGERPRINT, BadInput
 from engine.errors import require
 from sweep.commands.beginning import completion, init
 from sweep.commands.export import export
+from sweep.commands.numerics import check_numerics
 from sweep.commands.pages import report, view
 from sweep.commands.run import run
 from sweep.commands.store import FAILED, compact, gather, status, verify
@@ -80,7 +81,7 @@ def cli() -> None:
     """  # noqa: D301  click reads \b as a character
 
 
-for command in (init, run, sweep, status, gather, view, report, export, verify, compact, completion):
+for command in (init, run, check_numerics, sweep, status, gather, view, report, export, verify, compact, completion):
     cli.add_command(command)
 
 

@@ -33,15 +33,43 @@ def end_acts(walls, joints, w, end, x, y, dx, dy):
 @inlined_function
 def relative_velocity(persons, c, rotating):
     """Velocity at which the bodies of a contact part, and slip velocity of their surfaces, m/s."""
-    i, j, nx, ny = c.i, c.j, c.nx, c.ny
-    ux, uy, turn = persons.vx[i], persons.vy[i], 0.0
+    return _relative(c, persons.vx, persons.vy, persons.spin, persons.radius, rotating)
+
+
+@inlined_function
+def extrapolated_velocity(persons, c, rotating, v_n, v_t, extrapolation):
+    """The same extrapolated from the velocities of the step before."""
+    before_n, before_t = _relative(
+        c, persons.previous_x, persons.previous_y, persons.previous_spin, persons.radius, rotating
+    )
+    return v_n + extrapolation * (v_n - before_n), v_t + extrapolation * (v_t - before_t)
+
+
+@inlined_function
+def slip_of_turning(persons, c, rotating, v_n, v_t):
+    """Slip velocity by which the middle of a step differs from its end, over half its length, m/s^2.
+
+    The tangent of two persons turns while they slide along each other; that of a wall does not.
+    """
+    if c.wall >= 0:
+        return 0.0
+    r_i, r_j, u_t = persons.radius[c.i], persons.radius[c.j], v_t
     if rotating:
-        turn = persons.radius[i] * persons.spin[i]
+        u_t += r_i * persons.spin[c.i] + r_j * persons.spin[c.j]
+    return v_n * u_t / (r_i + r_j - c.overlap)
+
+
+@inlined_function
+def _relative(c, vx, vy, spin, radius, rotating):
+    i, j, nx, ny = c.i, c.j, c.nx, c.ny
+    ux, uy, turn = vx[i], vy[i], 0.0
+    if rotating:
+        turn = radius[i] * spin[i]
     if c.wall < 0:
-        ux -= persons.vx[j]
-        uy -= persons.vy[j]
+        ux -= vx[j]
+        uy -= vy[j]
         if rotating:
-            turn += persons.radius[j] * persons.spin[j]
+            turn += radius[j] * spin[j]
     return ux * nx + uy * ny, uy * nx - ux * ny - turn
 
 

@@ -7,13 +7,21 @@ compiler vectorises, scatter, and one that lists the few pairs that touch. The l
 import math
 
 from engine.kernel.compiled import inlined_function, step_function
-from engine.kernel.contacts import end_acts, from_closest_point, push, relative_velocity
+from engine.kernel.contacts import (
+    end_acts,
+    extrapolated_velocity,
+    from_closest_point,
+    push,
+    relative_velocity,
+    slip_of_turning,
+)
 from engine.kernel.guidance import aim
 from engine.kernel.integrators.interface import solves_contacts
 from engine.kernel.laws import anisotropy, drive, friction, has_history, is_present, normal, social
 from engine.kernel.laws.friction import needs_implicit
 from engine.kernel.state import BLOCK
 
+TINY = 1e-300  # m/s
 AWAY = 1e9  # m, out of the reach of any law
 
 
@@ -41,7 +49,7 @@ def forces(integrator, model, scene, parameters, persons, pairs, wall_pairs, con
         count = min(BLOCK, state.wall_pairs - first)
         _wall_social_forces(model, tolerance, scene, persons, wall_pairs, first, count, s)
         _list_contacts(model.wall_friction, persons, wall_pairs, contacts, first, count, scratch, state, True)
-    n, every, p, w = state.contacts, state.contacts + state.wall_contacts, pairs.displacement, wall_pairs.displacement
+    n, every, p, w = state.contacts, state.contacts + state.wall_contacts, pairs.history, wall_pairs.history
     return (
         _contact_forces(model.friction, model.normal, integrator, rotating, persons, contacts, 0, n, p, state),
         _contact_forces(
@@ -145,14 +153,14 @@ def _wall_social_forces(model, tolerance, scene, persons, pairs, first, count, s
 
 @step_function
 def _list_contacts(friction_law, persons, pairs, contacts, first, count, scratch, state, at_walls):
-    """List the pairs of a block that touch, those at walls behind the others; the springs of the rest end."""
-    s, touching, springs, number = scratch.block, scratch.touching, pairs.displacement[first : first + count], 0
+    """List the pairs of a block that touch, those at walls behind the others; the histories of the rest end."""
+    s, touching, history, number = scratch.block, scratch.touching, pairs.history[first : first + count], 0
     for p in range(count):  # without a branch: most pairs do not touch
         touching[number] = p
         number += s[2 * BLOCK + p] < 0.0
-    if has_history(friction_law):
+    if is_present(friction_law):
         for p in range(count):
-            springs[p] = springs[p] if s[2 * BLOCK + p] < 0.0 else 0.0
+            history[p] = history[p] if s[2 * BLOCK + p] < 0.0 else 0.0
     for t in range(number):
         p = touching[t]
         i, j, c = pairs.i[first + p], pairs.j[first + p], contacts[state.contacts + state.wall_contacts]
@@ -168,7 +176,7 @@ def _list_contacts(friction_law, persons, pairs, contacts, first, count, scratch
 
 
 @step_function
-def _contact_forces(friction_law, normal_law, integrator, rotating, persons, contacts, first, last, springs, state):
+def _contact_forces(friction_law, normal_law, integrator, rotating, persons, contacts, first, last, history, state):
     """Normal and tangential forces of listed contacts; returns the largest overlap."""
     deepest = 0.0
     for k in range(first, last):
@@ -179,16 +187,22 @@ def _contact_forces(friction_law, normal_law, integrator, rotating, persons, con
         if solves_contacts(integrator) and needs_implicit(friction_law):
             c.F_elastic = normal(normal_law, overlap, radius, mass, 0.0)
             c.damping = c.F_elastic - normal(normal_law, overlap, radius, mass, 1.0)
-            c.J_n, c.J_t, c.v_t = 0.0, 0.0, v_t
+            c.v_n, c.v_t, c.slip = v_n, v_t, v_t
             push(persons, c, c.F_elastic, 0.0)
             if state.recording:
                 c.F_n = normal(normal_law, overlap, radius, mass, v_n)
                 c.F_t, _ = friction(friction_law, overlap, radius, mass, v_t, c.F_n, 0.0)
         else:
-            c.F_n = normal(normal_law, overlap, radius, mass, v_n)
             ahead = state.history_offset * v_t
-            acting = springs[c.entry] + v_t * state.stretch - ahead
+            acting = history[c.entry] + v_t * state.stretch - ahead
+            if solves_contacts(integrator):
+                lasts = min(state.stretch, overlap / max(-v_n, TINY))  # what a contact made in this step has lasted
+                acting += v_t * (lasts - state.stretch)
+                acting += 0.5 * lasts**2 * slip_of_turning(persons, c, rotating, v_n, v_t)
+                v_n, v_t = extrapolated_velocity(persons, c, rotating, v_n, v_t, state.extrapolation)
+            c.F_n = normal(normal_law, overlap, radius, mass, v_n)
             c.F_t, left = friction(friction_law, overlap, radius, mass, v_t, c.F_n, acting)
-            springs[c.entry] = left + ahead
+            if has_history(friction_law):
+                history[c.entry] = left + ahead
             push(persons, c, c.F_n, c.F_t)
     return deepest

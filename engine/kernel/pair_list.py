@@ -18,11 +18,11 @@ LIST_COST = 2.4  # of making lists, in visits of all pairs
 
 @shared_function
 def rebuild(walls, parameters, persons, pairs, wall_pairs, scratch, state):
-    """List all pairs that can interact anew, with the springs of the old lists carried over.
+    """List all pairs that can interact anew, with the histories of the contacts carried over.
 
     The gone (`person_id` = -1) leave the arrays, and the others are sorted by cell, so that neighbours stand together.
-    Where there is no room, `room_needed` says so; the springs then wait, and the call is to be made again. If somebody
-    is nowhere, the run is unstable.
+    Where there is no room, `room_needed` says so; the histories then wait, and the call is to be made again. If
+    somebody is nowhere, the run is unstable.
     """
     if not state.room_needed:
         if _somebody_is_nowhere(persons, state.n):
@@ -33,8 +33,8 @@ def rebuild(walls, parameters, persons, pairs, wall_pairs, scratch, state):
     gap, wall_gap = parameters.cutoff + state.skin, parameters.wall_cutoff + state.skin
     columns, rows = _find_cells(persons, state.n, gap, scratch.cell)
     n, in_order = _cell_order(state.n, scratch.cell, columns * rows, scratch.cell_start, scratch.moved_to)
-    state.springs = _collect_springs(pairs, state.pairs, state.springs, scratch.moved_to, True)
-    state.wall_springs = _collect_springs(wall_pairs, state.wall_pairs, state.wall_springs, scratch.moved_to, False)
+    state.carried = _collect(pairs, state.pairs, state.carried, scratch.moved_to, True)
+    state.wall_carried = _collect(wall_pairs, state.wall_pairs, state.wall_carried, scratch.moved_to, False)
     if not in_order:
         _sort(persons, state.n, scratch)
     state.n = n
@@ -44,9 +44,9 @@ def rebuild(walls, parameters, persons, pairs, wall_pairs, scratch, state):
     if state.room_needed:
         state.pairs = state.wall_pairs = 0
         return
-    _return_springs(pairs, state.pairs, state.springs, n, scratch.pair_start)
-    _return_springs(wall_pairs, state.wall_pairs, state.wall_springs, n, scratch.pair_start)
-    state.springs = state.wall_springs = 0
+    _return(pairs, state.pairs, state.carried, n, scratch.pair_start)
+    _return(wall_pairs, state.wall_pairs, state.wall_carried, n, scratch.pair_start)
+    state.carried = state.wall_carried = 0
     for k in range(n):
         persons.listed_x[k], persons.listed_y[k] = persons.x[k], persons.y[k]
     state.lists_due, state.list_uses = False, 0
@@ -180,33 +180,33 @@ def _find_wall_pairs(persons, n, walls, pairs, gap, near_wall):
 
 
 @shared_function
-def _collect_springs(pairs, count, springs, moved_to, between_persons):
-    """Set the springs of a list aside, by the new numbers of their persons; returns how many wait."""
+def _collect(pairs, count, carried, moved_to, between_persons):
+    """Set the histories of a list aside, by the new numbers of their persons; returns how many wait."""
     for k in range(count):
-        i, j, displacement = moved_to[pairs.i[k]], np.int64(pairs.j[k]), pairs.displacement[k]
+        i, j, value = moved_to[pairs.i[k]], np.int64(pairs.j[k]), pairs.history[k]
         if between_persons:
             j = moved_to[j]
-        if displacement != 0.0 and i >= 0 and j >= 0:
-            if between_persons and i > j:  # tangent and slip velocity both turn round, and the displacement stays
+        if value != 0.0 and i >= 0 and j >= 0:
+            if between_persons and i > j:  # tangent, slip and force all turn round, and the values stay
                 i, j = j, i
-            spring = pairs.springs[springs]
-            spring.i, spring.j, spring.displacement = i, j, displacement
-            springs += 1
-    return springs
+            history = pairs.carried[carried]
+            history.i, history.j, history.value = i, j, value
+            carried += 1
+    return carried
 
 
 @shared_function
-def _return_springs(pairs, count, springs, n, start):
-    """Bring the springs that were set aside to where the same pairs stand now, in a list ordered by i."""
+def _return(pairs, count, carried, n, start):
+    """Bring the histories that were set aside to where the same pairs stand now, in a list ordered by i."""
     for i in range(n + 1):
         start[i] = 0
     for k in range(count):
-        pairs.displacement[k] = 0.0
+        pairs.history[k] = 0.0
         start[np.int64(pairs.i[k]) + 1] += 1
     for i in range(n):
         start[i + 1] += start[i]
-    for s in range(springs):
-        spring = pairs.springs[s]
-        for k in range(start[spring.i], start[spring.i + 1]):
-            if pairs.j[k] == spring.j:
-                pairs.displacement[k] = spring.displacement
+    for h in range(carried):
+        history = pairs.carried[h]
+        for k in range(start[history.i], start[history.i + 1]):
+            if pairs.j[k] == history.j:
+                pairs.history[k] = history.value

@@ -58,6 +58,8 @@ class Recorder:
         Whether also who is in contact.
     full : bool
         Whether also velocities, spins, springs and forces.
+    have_springs : (bool, bool)
+        Whether friction between persons, and that at walls, is a spring.
     N : int
         Persons at the start.
     """
@@ -66,6 +68,7 @@ class Recorder:
     dt: float
     contacts: bool
     full: bool
+    have_springs: tuple[bool, bool]
     N: int
     steps: list[int] = field(default_factory=list)
     rows: dict[str, list[np.ndarray]] = field(default_factory=lambda: {name: [] for name in Samples._fields})
@@ -91,8 +94,9 @@ class Recorder:
         i, j = persons.person_id[c["i"]], np.where(c["wall"] < 0, persons.person_id[c["j"]], -1 - c["wall"])
         values_of = {"contact_i": i.astype(np.int32), "contact_j": j.astype(np.int32)}
         if self.full:
-            springs = pairs.displacement[c["entry"][:between]], wall_pairs.displacement[c["entry"][between:]]
-            values_of |= {"tangential_displacement": np.concatenate(springs)}
+            springs = pairs.history[c["entry"][:between]], wall_pairs.history[c["entry"][between:]]
+            displacement = [a * has_spring for a, has_spring in zip(springs, self.have_springs, strict=True)]
+            values_of |= {"tangential_displacement": np.concatenate(displacement)}
             values_of |= {"contact_F_n": c["F_n"].copy(), "contact_F_t": c["F_t"].copy()}
         for name, of_contacts in values_of.items():
             self.rows[name].append(of_contacts)

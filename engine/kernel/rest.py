@@ -1,14 +1,12 @@
 """Whether a crowd is at rest for good, so that waiting for somebody to get out is idle."""
 
-import math
-
 from engine.kernel.compiled import entry_point, step_function
 from engine.kernel.contacts import relative_velocity
 from engine.kernel.laws import friction, has_history, is_present, normal
+from engine.kernel.laws.friction import friction_limit
 
 CREEP = 1e-3  # m; whoever may still move farther is not at rest
 SAFETY = 2.0  # on what may still change
-FAR = 1e6  # m, a displacement at which any spring slips
 
 
 @entry_point
@@ -32,7 +30,7 @@ def at_rest(model, exits, persons, pairs, wall_pairs, contacts, states, wait):
                 return False
     between, every = state.contacts, state.contacts + state.wall_contacts
     rotating, wait = is_present(model.rotation), SAFETY * wait
-    springs, wall_springs = pairs.displacement, wall_pairs.displacement
+    springs, wall_springs = pairs.history, wall_pairs.history
     slips = _some_may_slip(model.friction, model.normal, persons, contacts, 0, between, springs, rotating, wait)
     return not slips and not _some_may_slip(
         model.wall_friction, model.wall_normal, persons, contacts, between, every, wall_springs, rotating, wait
@@ -53,16 +51,8 @@ def _some_may_slip(friction_law, normal_law, persons, contacts, first, last, spr
         F_n_later = normal(normal_law, later, c.radius, c.mass, 0.0)
         F_t, _ = friction(friction_law, c.overlap, c.radius, c.mass, v_t, F_n, spring)
         F_t_later, _ = friction(friction_law, later, c.radius, c.mass, v_t, F_n_later, spring + v_t * wait)
-        limit = _max_friction(friction_law, c.overlap, c.radius, c.mass, F_n)
-        limit_later = _max_friction(friction_law, later, c.radius, c.mass, F_n_later)
+        limit = friction_limit(friction_law, c.overlap, c.radius, c.mass, F_n)
+        limit_later = friction_limit(friction_law, later, c.radius, c.mass, F_n_later)
         if abs(F_t) >= limit or abs(F_t_later) >= limit_later or 2.0 * abs(F_t_later - F_t) > limit_later - abs(F_t):
             return True
     return False
-
-
-@step_function
-def _max_friction(law, overlap, radius, mass, F_n):
-    """Largest force of a spring, N; inf where there is none: such friction vanishes with the slip velocity."""
-    if has_history(law):
-        return abs(friction(law, overlap, radius, mass, 0.0, F_n, FAR)[0])
-    return math.inf

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from engine.kernel.integrators import INTEGRATORS
-from engine.kernel.laws import inertia
+from engine.kernel.laws import has_history, inertia
 from engine.kernel.laws.custom import kernel_parameters
 from engine.kernel.laws.social_force import cutoff
 from engine.kernel.pair_list import DOMAIN_LIMIT
@@ -65,7 +65,14 @@ class Simulation:
         self._quiet_checks = 0
         self._states, self._scratch = initial_state(N), new_scratch(N, len(scenario.scene.walls))
         self.recorder = (
-            Recorder(options.record_every, scenario.numerics.dt, options.contacts, options.record == "full", N)
+            Recorder(
+                options.record_every,
+                scenario.numerics.dt,
+                options.contacts,
+                options.record == "full",
+                (has_history(model.friction), has_history(model.wall_friction)),
+                N,
+            )
             if options.record_every > 0.0
             else None
         )
@@ -154,6 +161,7 @@ def _parameters(scenario: Any, integrator: Any) -> StepParameters:
         cutoff=cutoff(model.social, tolerance),
         wall_cutoff=cutoff(model.wall_social, tolerance),
         force_tolerance=tolerance,
+        solver_tolerance=float(numerics.solver_tolerance),
         skin=float(options.skin),
         min_radius=radius,
         allowed_overlap=allowed_overlaps(model, integrator, dt, radius, mass),

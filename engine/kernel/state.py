@@ -26,9 +26,9 @@ class Persons(NamedTuple):
     v_d: np.ndarray  # m/s
     inv_mass: np.ndarray  # 1/kg
     inv_inertia: np.ndarray  # 1/(kg m^2), 0 where nobody rotates
-    fx_before: np.ndarray  # N, forces of the step before, where the integrator needs them
-    fy_before: np.ndarray  # N
-    torque_before: np.ndarray  # N m
+    previous_x: np.ndarray  # of the step before, what the integrator keeps: forces (N, N m) or velocities (m/s, rad/s)
+    previous_y: np.ndarray
+    previous_spin: np.ndarray
     fx: np.ndarray  # N
     fy: np.ndarray  # N
     torque: np.ndarray  # N m
@@ -38,7 +38,7 @@ class Persons(NamedTuple):
     listed_y: np.ndarray
 
 
-MOVED_TOGETHER = Persons._fields.index("torque_before") + 1  # fields that follow a person when persons are sorted
+MOVED_TOGETHER = Persons._fields.index("previous_spin") + 1  # fields that follow a person when persons are sorted
 
 
 class PairList(NamedTuple):
@@ -46,11 +46,11 @@ class PairList(NamedTuple):
 
     i: np.ndarray  # (room,) uint32: an unsigned index costs no test for a negative one
     j: np.ndarray  # (room,) uint32, the other person, j > i, or the wall
-    displacement: np.ndarray  # (room,) m, of the tangential spring
-    springs: np.ndarray  # (room,) SPRING, carried from one list to the next
+    history: np.ndarray  # (room,) displacement of the tangential spring, m; F_t/F_n where friction is solved for
+    carried: np.ndarray  # (room,) HISTORY, from one list to the next
 
 
-SPRING = np.dtype([("i", np.int64), ("j", np.int64), ("displacement", np.float64)])
+HISTORY = np.dtype([("i", np.int64), ("j", np.int64), ("value", np.float64)])
 
 CONTACT = np.dtype(
     [
@@ -65,11 +65,16 @@ CONTACT = np.dtype(
         ("mass", np.float64),  # kg, reduced
         ("F_n", np.float64),  # N, normal and
         ("F_t", np.float64),  # N, tangential force
-        ("F_elastic", np.float64),  # N, normal force without damping; this and the next four for solved contacts
+        ("F_elastic", np.float64),  # N, normal force without damping; this and what follows for solved contacts
         ("damping", np.float64),  # kg/s, of the normal force
+        ("v_n", np.float64),  # m/s, velocity at which the bodies part, and
+        ("v_t", np.float64),  # m/s, slip velocity before the contacts are solved
+        ("inv_mass_n", np.float64),  # 1/kg, change of these by a unit impulse
+        ("inv_mass_t", np.float64),  # 1/kg
+        ("theta", np.float64),  # weight of the new slip velocity
         ("J_n", np.float64),  # N s, impulse of damping along n
         ("J_t", np.float64),  # N s, impulse of friction along t
-        ("v_t", np.float64),  # m/s, slip velocity
+        ("slip", np.float64),  # m/s, slip velocity at which friction acts
     ],
     align=True,
 )
@@ -92,8 +97,8 @@ RUN_STATE = np.dtype(
         ("last_out", np.int64),  # step at which somebody got out
         ("pairs", np.int64),
         ("wall_pairs", np.int64),
-        ("springs", np.int64),  # carried to the next list
-        ("wall_springs", np.int64),
+        ("carried", np.int64),  # histories, to the next list
+        ("wall_carried", np.int64),
         ("contacts", np.int64),  # between persons; those at walls follow
         ("wall_contacts", np.int64),
         ("rebuilds", np.int64),  # of the lists
@@ -103,6 +108,7 @@ RUN_STATE = np.dtype(
         ("dt", np.float64),  # s, length of the present or last substep
         ("stretch", np.float64),  # s, time over which tangential springs stretch
         ("history_offset", np.float64),  # s, by which springs are kept ahead of the slip that acts
+        ("extrapolation", np.float64),  # of velocities to the end of a step, over their last change
         ("recording", np.bool_),  # the forces of solved contacts are wanted as well
         ("overlap", np.float64),  # m, largest now
         ("speed", np.float64),  # m/s, largest now
@@ -120,6 +126,7 @@ class StepParameters(NamedTuple):
     cutoff: float  # m, largest gap of two persons that interact
     wall_cutoff: float  # m, of person and wall
     force_tolerance: float  # N, subtracted from the social force, so that it ends without a jump
+    solver_tolerance: float  # m/s, change of velocities at which contacts count as solved
     skin: float  # m; 0: adapted
     min_radius: float  # m: overlap at which bodies pass through each other
     allowed_overlap: np.ndarray  # (7,) m: up to which a step stands that is cut into 1, 2, 4 ... 64 substeps
@@ -153,19 +160,20 @@ def new_persons(start: Any, inertia: np.ndarray) -> Persons:
     state: dict[str, np.ndarray] = {name: np.zeros(N) for name in Persons._fields}
     state |= {name: value.copy() for name, value in start._asdict().items()}
     state |= {"person_id": np.arange(N), "exited": np.zeros(N, np.int64)}
+    state |= {"previous_x": start.vx.copy(), "previous_y": start.vy.copy(), "previous_spin": start.spin.copy()}
     state |= {"inv_mass": 1.0 / start.mass, "inv_inertia": 1.0 / inertia}
     return Persons(**state | {"listed_x": np.full(N, np.nan), "listed_y": np.full(N, np.nan)})
 
 
 def empty_pair_list(room: int) -> PairList:
     """Room for so many pairs."""
-    return PairList(np.empty(room, np.uint32), np.empty(room, np.uint32), np.zeros(room), records(room, SPRING))
+    return PairList(np.empty(room, np.uint32), np.empty(room, np.uint32), np.zeros(room), records(room, HISTORY))
 
 
 def larger_pair_list(pairs: PairList) -> PairList:
-    """Twice the room, with the springs that wait to be carried on."""
+    """Twice the room, with the histories that wait to be carried on."""
     larger = empty_pair_list(2 * pairs.i.size)
-    larger.springs[: pairs.springs.size] = pairs.springs
+    larger.carried[: pairs.carried.size] = pairs.carried
     return larger
 
 

@@ -29,7 +29,7 @@ def advance(integrator, model, scene, parameters, persons, pairs, wall_pairs, co
     while state.outcome == RUNNING and (state.forces_due or state.step < until):
         if not state.forces_due:
             previous = _begin_substep(parameters, state)
-            begin(integrator, model, persons, contacts, state, previous, state.dt)
+            begin(integrator, model, parameters, persons, pairs, wall_pairs, contacts, state, previous, state.dt)
             _move(scene.exits, parameters, persons, exits, state)
             predict(integrator, is_present(model.rotation), persons, state.n, state.dt)
         if state.lists_due:

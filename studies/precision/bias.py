@@ -11,9 +11,9 @@ from studies import measures
 from studies.measures.facts import BLOCKED, KNOWN
 from studies.measures.uncertainty import resampling_weights, stretched_interval, wilson
 
-CONFIDENCE, RESAMPLES = 0.95, 4000
-TOLERATED = 0.02  # of a ratio; of a share, absolute
-LONG_DELAY = 1.0  # s
+CONFIDENCE, RESAMPLES = 0.9, 4000  # two one-sided tests of 5 %
+MARGIN = 0.02  # of a ratio; of a share of runs, absolute
+LONG_DELAYS = {1.0: MARGIN, 2.0: 0.1}  # s -> margin
 FIRST_DELAY, LAST_DELAY = 10, 0.8  # rank of leaving, and share of the crowd: the delays that are counted
 SHOWN, NOT_SHOWN, VIOLATED = "shown", "not shown", "violated"
 Floats = NDArray[np.float64]
@@ -28,16 +28,19 @@ class Bias(NamedTuple):
     high: float
     pairs: int  # seeds that both ran
     used: tuple[int, int]  # runs that the statistic rests on: setting, reference
+    margin: float = MARGIN  # within which the two count as the same
 
     @property
     def verdict(self) -> str:
-        """Whether a bias below what is tolerated is shown, not shown with so many seeds, or violated."""
-        if self.low > TOLERATED or self.high < -TOLERATED:
+        """Whether a bias within the margin is shown, not shown with so many seeds, or violated."""
+        if self.low > self.margin or self.high < -self.margin:
             return VIOLATED
-        return SHOWN if self.low >= -TOLERATED and self.high <= TOLERATED else NOT_SHOWN
+        return SHOWN if self.low >= -self.margin and self.high <= self.margin else NOT_SHOWN
 
 
-def ratio(quantity: str, tested: tuple[Floats, Floats], reference: tuple[Floats, Floats]) -> Bias:
+def ratio(
+    quantity: str, tested: tuple[Floats, Floats], reference: tuple[Floats, Floats], margin: float = MARGIN
+) -> Bias:
     """Relative bias of a mean that is pooled over runs: sum/number, over the same of the reference.
 
     Seeds are drawn with replacement, both runs of a seed together; arms stretched for few seeds.
@@ -56,7 +59,7 @@ def ratio(quantity: str, tested: tuple[Floats, Floats], reference: tuple[Floats,
             drawn = _mean(weights, *tested) / _mean(weights, *reference) - 1.0
             if np.isfinite(drawn).all():  # else some draws have nothing to divide by: no interval
                 low, high = stretched_interval(float(value), drawn, min(used), CONFIDENCE)
-    return Bias(quantity, float(value), low, high, n, used)
+    return Bias(quantity, float(value), low, high, n, used, margin)
 
 
 def difference(quantity: str, tested: NDArray[np.bool_], reference: NDArray[np.bool_]) -> Bias:
@@ -88,10 +91,14 @@ def compare(tested: xr.Dataset, reference: xr.Dataset, ranks: Iterable[int] = ()
     found += [ratio(f"time of exit {n}", _times(tested, n), _times(reference, n)) for n in ranks]
     blocked = [measures.outcome_is(ds, *BLOCKED).values for ds in (tested, reference)]
     found.append(difference("blocked share", *blocked))
-    (total, late, number), (total_r, late_r, number_r) = _delays(tested), _delays(reference)
-    found.append(ratio("mean delay", (total, number), (total_r, number_r)))
-    found.append(ratio(f"share of delays above {LONG_DELAY:g} s", (late, number), (late_r, number_r)))
+    of, of_reference = _delays(tested), _delays(reference)
+    for name, margin in {"mean delay": MARGIN, **{_long(d): m for d, m in LONG_DELAYS.items()}}.items():
+        found.append(ratio(name, (of[name], of["number"]), (of_reference[name], of_reference["number"]), margin))
     return found
+
+
+def _long(delay: float) -> str:
+    return f"share of delays above {delay:g} s"
 
 
 def counts(ds: xr.Dataset) -> str:
@@ -117,15 +124,13 @@ def _times(ds: xr.Dataset, rank: int | None = None) -> tuple[Floats, Floats]:
     return np.where(known, times, 0.0), known.astype(float)
 
 
-def _delays(ds: xr.Dataset) -> tuple[Floats, Floats, Floats]:
-    """Sum of the delays of each run, number of long ones, number; open waits are in none."""
+def _delays(ds: xr.Dataset) -> dict[str, Floats]:
+    """Sum of the delays of each run, numbers of long ones, number; open waits are in none."""
     last = int(LAST_DELAY * int(ds.persons.max())) if ds.seed.size else FIRST_DELAY + 1
     d = measures.delays(ds, FIRST_DELAY, max(last, FIRST_DELAY + 1)).delay
-    return (
-        d.sum("exit").values.astype(float),
-        (d > LONG_DELAY).sum("exit").values.astype(float),
-        d.notnull().sum("exit").values.astype(float),
-    )
+    sums = {"mean delay": d.sum("exit"), "number": d.notnull().sum("exit")}
+    sums |= {_long(delay): (d > delay).sum("exit") for delay in LONG_DELAYS}
+    return {name: values.values.astype(float) for name, values in sums.items()}
 
 
 def _mean(weights: Floats, sums: Floats, numbers: Floats) -> Floats:

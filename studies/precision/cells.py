@@ -7,10 +7,9 @@ from typing import NamedTuple
 import xarray as xr
 
 from engine import BadInput
-from engine.rooms import ROOMS
 from studies.measures import outcome_is
 from studies.precision.bias import Bias, compare, counts
-from studies.precision.settings import PAPER, Setting, setting_of
+from studies.precision.settings import Setting, keywords_of, setting_of
 from sweep import Grid, sweep
 from sweep.grid import Scalar
 from sweep.schema import run_key
@@ -60,21 +59,9 @@ class Judged(NamedTuple):
 
 def explicit(integrator: str, dt: float, force_tolerance: float, seeds: int) -> Trial:
     """A trial with all numerics given."""
-    keywords = (("integrator", integrator), ("dt", dt), ("force_tolerance", force_tolerance))
+    setting = Setting(integrator, dt, force_tolerance)
+    keywords = tuple(keywords_of(setting).items())
     return Trial(f"{integrator}, {dt:g} s, {force_tolerance:g} N", keywords, seeds)
-
-
-def around_default(
-    room: str, steps: dict[float, int], tolerances: dict[float, int], seeds: int, paper: int
-) -> tuple[Trial, ...]:
-    """The default, the paper's numerics, and the default with other steps, s, or tolerances, N (values: seeds)."""
-    usual = setting_of(ROOMS[room]())
-    return (
-        Trial(DEFAULT, (), seeds),
-        *([Trial(PAPER, (("numerics", PAPER),), paper)] if paper else []),
-        *(explicit(usual.integrator, dt, usual.force_tolerance, n) for dt, n in steps.items() if dt != usual.dt),
-        *(explicit(usual.integrator, usual.dt, f, n) for f, n in tolerances.items() if f != usual.force_tolerance),
-    )
 
 
 def judge(cell: Cell, store: Path, jobs: int) -> list[Judged]:

@@ -14,7 +14,7 @@ GASES = {"Hertz (lin_dem)": models.lin_dem(), "Hooke (parisi_dorso)": models.par
 SIDE, N, SPEED = 7.0, 60, 1.0  # m, persons, m/s
 EVERY = 0.05  # s
 TOLERANCE = 1e-3  # N
-LEAPFROG = "semi_implicit"
+LEAPFROG = "theta"
 
 
 class Drift(NamedTuple):

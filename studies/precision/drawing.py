@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from studies.precision.bias import TOLERATED, Bias
+from studies.precision.bias import MARGIN, Bias
 from studies.precision.cells import Cell, Judged
 from studies.precision.conservation import Drift
 from studies.precision.front import pareto
@@ -18,7 +18,7 @@ from studies.precision.positions import Found
 from studies.precision.settings import PAPER, chosen
 from studies.presentation import figures
 
-COLOURS = {"velocity_verlet": figures.ORANGE, "predictor": figures.GREEN, "semi_implicit": figures.BLUE}
+COLOURS = {"velocity_verlet": figures.ORANGE, "predictor": figures.GREEN, "theta": figures.BLUE}
 AUTHORS = {"lin_room": "Lin et al.", "parisi_room": "Parisi & Dorso"}
 MARKERS = ("o", "s", "^", "D", "v", "P")
 STATISTICS = {"clearance time": figures.BLUE, "mean delay": figures.GREEN, "blocked share": figures.ORANGE}
@@ -116,13 +116,13 @@ def biases(judged: list[Judged]) -> Figure:
         axis.set_visible(False)
     for name, colour in STATISTICS.items():
         grid[0, 0].plot([], [], "o", ms=3, color=colour, label=f"{name}, 95 %")
-    grid[0, 0].fill_between([], [], color=figures.GREY, alpha=0.25, lw=0, label=f"$\\pm${100 * TOLERATED:g} %")
+    grid[0, 0].fill_between([], [], color=figures.GREY, alpha=0.25, lw=0, label=f"$\\pm${100 * MARGIN:g} %")
     figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
     return figure
 
 
 def _forest(axis: Axes, cell: Cell, column: list[Judged]) -> None:
-    axis.axvspan(-100 * TOLERATED, 100 * TOLERATED, color=figures.GREY, alpha=0.25, lw=0)
+    axis.axvspan(-100 * MARGIN, 100 * MARGIN, color=figures.GREY, alpha=0.25, lw=0)
     axis.axvline(0.0, color="black", lw=0.6)
     for height, j in enumerate(column):
         for k, (name, colour) in enumerate(STATISTICS.items()):
@@ -135,7 +135,7 @@ def _forest(axis: Axes, cell: Cell, column: list[Judged]) -> None:
     axis.invert_yaxis()
     drawn = [b for j in column for b in j.biases if b.quantity in STATISTICS]
     ends = np.abs([end for b in drawn for end in (b.low, b.high) if np.isfinite(end)])
-    limit = 110 * min(max([*ends, 1.25 * TOLERATED]), WIDEST)
+    limit = 110 * min(max([*ends, 1.25 * MARGIN]), WIDEST)
     axis.set_xlim(-limit, limit)
     axis.set_title(_title(cell.room, cell.v_d, f"N = {cell.N}"))
     axis.set_xlabel("bias / %, of shares percentage points")

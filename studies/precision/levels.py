@@ -8,7 +8,6 @@ from engine import Scenario
 from engine.options import LEVELS
 from engine.rooms import ROOMS
 from studies.precision import positions
-from studies.precision.bias import TOLERATED
 from studies.precision.cells import DEFAULT, Judged
 from studies.precision.clock import compile_kernel, timed
 from studies.precision.settings import PAPER, Setting, chosen
@@ -54,12 +53,12 @@ def _level(room: str, name: str, found: list[positions.Found], judged: list[Judg
 
 
 def _summary(judged: Judged) -> str:
-    """Which statistics of a cell are shown to be within the tolerance."""
+    """Which statistics of a cell are shown to be within their margin."""
     said: dict[str, list[str]] = {}
     for bias in judged.biases:
         said.setdefault(bias.verdict, []).append(bias.quantity)
     words = "; ".join(f"{verdict}: {', '.join(names)}" for verdict, names in said.items())
-    return f"v_d = {judged.cell.v_d:g} m/s, {100 * TOLERATED:g} % {words}"
+    return f"v_d = {judged.cell.v_d:g} m/s, N = {judged.cell.N}: {words}"
 
 
 class SpeedUp(NamedTuple):

@@ -2,12 +2,14 @@
 
 from typing import NamedTuple
 
-from studies.precision.cells import Cell, Trial, around_default, explicit
+from engine.rooms import ROOMS
+from studies.precision.cells import Cell, Trial, explicit
 from studies.precision.positions import TIGHT, Case
 from studies.precision.settings import Setting
+from sweep.numerics import FINER
 
-INTEGRATORS = ("velocity_verlet", "predictor", "semi_implicit")
-STEPS = (1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2)  # s
+INTEGRATORS = ("velocity_verlet", "predictor", "theta")
+STEPS = (2e-4, 5e-4, 1e-3, 2e-3, 4e-3, 5e-3, 1e-2)  # s
 
 
 class Plan(NamedTuple):
@@ -21,6 +23,7 @@ class Plan(NamedTuple):
     stretch: float  # s, simulated for a time
     gas_time: float  # s
     cells: tuple[Cell, ...]
+    friction_seeds: int  # of the friction in each cell, at each step
     speed_ups: tuple[tuple[str, float, int, int], ...]  # room, v_d, N, seeds
     repeats: int  # of times of savings
     compiling: bool  # also savings that need kernels of their own
@@ -28,23 +31,14 @@ class Plan(NamedTuple):
 
 def case(room: str, v_d: float, time: float) -> Case:
     """A case with a reference of second order, and two that must agree with it: twice the step, another integrator."""
-    others = (Setting("predictor", 5e-5, TIGHT), Setting("semi_implicit", 2.5e-5, TIGHT))
+    others = (Setting("predictor", 5e-5, TIGHT), Setting("theta", 2.5e-5, TIGHT))
     return Case(room, v_d, time, Setting("predictor", 2.5e-5, TIGHT), others)
 
 
-def parisi(v_d: float, default: int, cheap: int, dear: int, paper: int) -> Cell:
-    """A cell of Parisi & Dorso's room with so many seeds; those of the default are the reference's too."""
-    steps = {1e-3: dear, 2e-3: default, 5e-3: cheap, 1e-2: cheap}
-    trials = around_default("parisi_room", steps, {1e-3: cheap, 1.0: cheap, 3.0: cheap}, default, paper)
-    exact = explicit("predictor", 1e-3, 1e-3, default)
-    return Cell("parisi_room", v_d, 200, exact, trials, (180,))
-
-
-def lin(v_d: float, default: int, others: int) -> Cell:
-    """A cell of Lin, Ma & Lo's room, with as many seeds of the default as of the reference."""
-    steps, tolerances = dict.fromkeys((1e-3, 2e-3, 5e-3, 1e-2), others), dict.fromkeys((1e-3, 1.0, 3.0), others)
-    trials = around_default("lin_room", steps, tolerances, default, others)
-    return Cell("lin_room", v_d, 100, explicit("semi_implicit", 5e-4, 1e-3, default), trials)
+def certified(room: str, v_d: float, N: int, seeds: int) -> Cell:
+    """A cell whose default is held against a quarter of its step, with a force tolerance of 1 mN."""
+    dt = ROOMS[room]().numerics.dt / FINER
+    return Cell(room, v_d, N, explicit("theta", dt, 1e-3, seeds), (Trial("default", (), seeds),))
 
 
 FULL = Plan(
@@ -56,16 +50,20 @@ FULL = Plan(
     ),
     integrators=INTEGRATORS,
     steps=STEPS,
-    tolerances=(1e-3, 1e-2, 0.3, 3.0),
+    tolerances=(1e-3, 1e-2, 0.3),
     seeds=3,
     stretch=10.0,
     gas_time=20.0,
     cells=(
-        parisi(1.5, default=200, cheap=200, dear=60, paper=20),
-        parisi(4.0, default=500, cheap=200, dear=60, paper=15),
-        lin(1.0, default=200, others=60),
-        lin(1.6, default=500, others=60),
+        certified("lin_room", 1.0, 100, seeds=600),
+        certified("lin_room", 1.6, 100, seeds=600),
+        certified("lin_room", 1.0, 200, seeds=250),
+        certified("lin_room", 1.8, 200, seeds=250),
+        certified("parisi_room", 1.5, 200, seeds=400),
+        certified("parisi_room", 4.0, 200, seeds=400),
+        certified("parisi_room", 8.0, 200, seeds=400),
     ),
+    friction_seeds=120,
     speed_ups=(("parisi_room", 4.0, 200, 3), ("lin_room", 1.6, 100, 5)),
     repeats=5,
     compiling=True,
@@ -77,7 +75,7 @@ QUICK = Plan(
         Case("parisi_room", 4.0, 1.0, *COARSE),
         Case("lin_room", 1.0, 1.0, *COARSE),
     ),
-    integrators=("velocity_verlet", "semi_implicit"),
+    integrators=("velocity_verlet", "theta"),
     steps=(1e-3, 5e-3),
     tolerances=(1e-3, 0.3),
     seeds=2,
@@ -89,21 +87,22 @@ QUICK = Plan(
             4.0,
             60,
             explicit("velocity_verlet", 5e-4, 1e-3, 4),
-            (Trial("default", (), 4), explicit("semi_implicit", 5e-3, 3.0, 4)),
+            (Trial("default", (), 4), explicit("theta", 5e-3, 3.0, 4)),
             (54,),
         ),
         Cell(
             "lin_room",
             1.0,
             40,
-            explicit("semi_implicit", 1e-3, 1e-3, 4),
+            explicit("theta", 1e-3, 1e-3, 4),
             (
                 Trial("default", (), 4),
                 Trial("paper", (("numerics", "paper"),), 4),
-                explicit("semi_implicit", 1e-2, 0.3, 4),
+                explicit("theta", 1e-2, 0.3, 4),
             ),
         ),
     ),
+    friction_seeds=3,
     speed_ups=(("parisi_room", 4.0, 60, 1), ("lin_room", 1.0, 40, 1)),
     repeats=2,
     compiling=False,

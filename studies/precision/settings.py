@@ -1,6 +1,7 @@
 """Settings of the numerics, and scenarios under them."""
 
-from typing import NamedTuple
+import math
+from typing import Any, NamedTuple
 
 from engine import Scenario
 from engine.options import LEVELS
@@ -29,6 +30,12 @@ def setting_of(scenario: Scenario) -> Setting:
     return Setting(numerics.integrator, numerics.dt, numerics.force_tolerance, scenario.options.skin)
 
 
+def keywords_of(setting: Setting) -> dict[str, Any]:
+    """As options; contacts are solved as exactly as at the level of that force tolerance."""
+    exact = min(LEVELS.values(), key=lambda level: abs(math.log(level.force_tolerance / setting.force_tolerance)))
+    return setting._asdict() | {"solver_tolerance": exact.solver_tolerance}
+
+
 def under(setting: Setting, scenario: Scenario) -> Scenario:
     """The scenario computed so.
 
@@ -37,7 +44,7 @@ def under(setting: Setting, scenario: Scenario) -> Scenario:
     BadInput
         If the laws do not allow the step.
     """
-    return scenario.with_options(**setting._asdict())
+    return scenario.with_options(**keywords_of(setting))
 
 
 def chosen(room: str) -> dict[str, Setting]:

@@ -10,7 +10,7 @@ from engine import Model, models
 from engine.kernel.integrators import INTEGRATORS
 from engine.models import validated
 
-FRICTION = (("reset", "kinetic"), ("kept", "kept"), ("reset", "reset"))  # of `models.lin_dem`: persons, walls
+FRICTION = (("kept", "kinetic"), ("kept", "kept"), ("reset", "reset"))  # of `models.lin_dem`: persons, walls
 OTHERS = ("parisi_dorso", "helbing_2000", "lambda_anisotropic")  # functions of `engine.models` without arguments
 MODELS: dict[str, Model] = {f"lin_dem ({a}, {b})": models.lin_dem(friction=a, wall_friction=b) for a, b in FRICTION} | {
     name: getattr(models, name)() for name in OTHERS if hasattr(models, name)

@@ -5,23 +5,29 @@ from typing import Any
 from engine import Scenario, rooms
 from engine.errors import require
 
-DEFAULT = "RK"
-KEPT = {"friction": "kept", "wall_friction": "kept"}
+DEFAULT = "kept 0.3"
+RESET = {"friction": "reset", "mu": 0.5}
+KEPT_WALLS = {"mu": 0.5, "wall_friction": "kept"}
 VARIANTS: dict[str, dict[str, Any]] = {
-    "RK": {},
-    "RS": {"wall_friction": "coulomb"},
-    "W": KEPT,
-    "W01": KEPT | {"wall_mu": 0.1},
-    "R02": {"wall_friction": "reset", "wall_mu": 0.2},
-    "WK": {"friction": "kept"},
-    "WR": {"wall_friction": "reset"},
-    "B": KEPT | {"wall_social": False},
-    "RK-iso": {"phi": 0.0},
-    "RK-disc": {"inertia": "disc"},
-    "RK-wall": {"wall_social": False},
-    "RK-A": {"wall_A": 300.0},
-    "RK-dt": {"numerics": "paper"},
-    "KK": {"friction": "kinetic"},
+    "kept 0.3": {},
+    "kept 0.2": {"mu": 0.2},
+    "kept 0.25": {"mu": 0.25},
+    "kept 0.4": {"mu": 0.4},
+    "kept 0.5": {"mu": 0.5},
+    "reset": RESET,
+    "reset to zero, 1 ms": RESET | {"friction": "reset_to_zero", "numerics": "paper"},
+    "reset, Coulomb walls": RESET | {"wall_friction": "coulomb"},
+    "reset, reset walls": RESET | {"wall_friction": "reset"},
+    "reset, reset walls 0.2": RESET | {"wall_friction": "reset", "wall_mu": 0.2},
+    "kept 0.5, kept walls": KEPT_WALLS,
+    "kept 0.5, kept walls 0.1": KEPT_WALLS | {"wall_mu": 0.1},
+    "kept 0.5, kept walls that only touch": KEPT_WALLS | {"wall_social": False},
+    "walls that only touch": {"wall_social": False},
+    "walls of 300 N": {"wall_A": 300.0},
+    "isotropic": {"phi": 0.0},
+    "discs": {"inertia": "disc"},
+    "kinetic 0.5": {"friction": "kinetic", "mu": 0.5},
+    "numerics of the paper": {"numerics": "paper"},
 }
 
 

@@ -3,6 +3,7 @@
 import inspect
 import json
 import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, get_type_hints
 
@@ -17,8 +18,12 @@ from sweep.storage.durable import require_target
 from sweep.storage.runfile import write_run
 
 
-class Rooms(click.Group):
-    """One subcommand for each room, its options the room's keywords."""
+class RoomCommands(click.Group):
+    """One subcommand for each room, made by `command_of(name, room)`."""
+
+    def __init__(self, *args: Any, command_of: Callable[[str, Room], click.Command], **keywords: Any) -> None:
+        super().__init__(*args, **keywords)
+        self._command_of = command_of
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """The rooms' names."""
@@ -27,21 +32,7 @@ class Rooms(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command:
         """The subcommand of a room."""
         name = cmd_name if is_in_a_file(cmd_name) else cmd_name.replace("-", "_")
-        return _room_command(name, room_named(name))
-
-
-@click.group(cls=Rooms)
-def run() -> None:
-    """Run one scenario of a room.
-
-    \b
-    jamsweep run lin_room --v-d 1.0 --N 200 --seed 1 -o run.nc
-    jamsweep run parisi_room --v-d 4 --record-every 0.1 --contacts -o run.nc
-    jamsweep run lin_room --v-d 1.6 --json
-    jamsweep run my_rooms.py:my_room --seed 3
-
-    Each room has options of its own: jamsweep run lin_room --help.
-    """  # noqa: D301  click reads \b as a character
+        return self._command_of(name, room_named(name))
 
 
 def _room_command(name: str, room: Room) -> click.Command:
@@ -54,6 +45,20 @@ def _room_command(name: str, room: Room) -> click.Command:
     summary, example = first_line(room), f"\b\njamsweep run {name} --seed 1 -o run.nc"
     options, words = [*options_of(room), out, plain], f"{summary}\n\n{example}"
     return click.Command(name, params=options, callback=once, help=words, short_help=summary)
+
+
+@click.group(cls=RoomCommands, command_of=_room_command)
+def run() -> None:
+    """Run one scenario of a room.
+
+    \b
+    jamsweep run lin_room --v-d 1.0 --N 200 --seed 1 -o run.nc
+    jamsweep run parisi_room --v-d 4 --record-every 0.1 --contacts -o run.nc
+    jamsweep run lin_room --v-d 1.6 --json
+    jamsweep run my_rooms.py:my_room --seed 3
+
+    Each room has options of its own: jamsweep run lin_room --help.
+    """  # noqa: D301  click reads \b as a character
 
 
 def _run_once(scenario: Scenario, output: Path | None, as_json: bool) -> None:

@@ -92,7 +92,14 @@ def contact(normal, friction, overlap, radius, mass, n, u, of_spin, displacement
     F_t = -alpha * (friction.k_t * displacement + mass * friction.g_t * v_t)
     limit = friction.mu * np.abs(F_n)
     slips = np.abs(F_t) > limit
-    F_t = np.where(slips, np.sign(F_t) * limit, F_t)
-    at_limit = -(F_t / np.where(touch, alpha, 1.0) + mass * friction.g_t * v_t) / friction.k_t
-    rest = at_limit if type(friction).__name__ == "Mindlin" else 0.0
+    kind, sign = type(friction).__name__, np.sign(F_t)
+    damping = -sign * alpha * mass * friction.g_t * v_t
+    tooth = np.where(slips, limit - damping, 1.0)
+    spring = np.where(tooth > 0.0, np.mod(abs(F_t) - limit, np.where(tooth > 0.0, tooth, 1.0)), 0.0)
+    if kind == "MindlinReset":
+        F_t = np.where(slips, sign * np.where(tooth > 0.0, np.maximum(spring + damping, -limit), limit), F_t)
+        rest = -sign * spring / (np.where(touch, alpha, 1.0) * friction.k_t)
+    else:
+        F_t = np.where(slips, sign * limit, F_t)
+        rest = -(F_t / np.where(touch, alpha, 1.0) + mass * friction.g_t * v_t) / friction.k_t
     return F_n, F_t, np.where(slips, rest, displacement)

@@ -76,7 +76,13 @@ def test_sliding_friction_never_does_positive_work(v_t, F_n, law):
 
 
 @settings(deadline=None)
-@given(overlaps, speeds, st.floats(-1.0, 1.0), st.floats(1e-6, 1e-3), st.sampled_from(["Mindlin", "MindlinReset"]))
+@given(
+    overlaps,
+    speeds,
+    st.floats(-1.0, 1.0),
+    st.floats(1e-6, 1e-3),
+    st.sampled_from(["Mindlin", "MindlinReset", "MindlinResetToZero"]),
+)
 def test_a_tangential_spring_gives_back_no_more_than_it_took(overlap, v_t, fraction, dt, kind):
     """Over one step at constant overlap: work of the force and change of the spring's energy.
 

@@ -11,7 +11,7 @@ from sweep import read_run, write_run
 
 PARISI = rooms.parisi_room(v_d=4.0, N=60, seed=3, size=8.0, dt=0.01)
 LIN = rooms.lin_room(v_d=1.4, N=40, seed=3, size=6.0, time_limit=15.0, numerics="paper")
-BOTH = pytest.mark.parametrize("scenario", [PARISI, LIN], ids=["semi_implicit", "velocity_verlet"])
+BOTH = pytest.mark.parametrize("scenario", [PARISI, LIN], ids=["theta", "velocity_verlet"])
 
 
 def recorded(scenario, **wanted):

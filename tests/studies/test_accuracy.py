@@ -142,8 +142,8 @@ def test_nothing_to_divide_by_is_undefined_and_not_shown():
 
 
 def test_errors_fall_with_the_step_and_the_skin_changes_nothing():
-    case = Case("lin_room", 1.0, 0.2, Setting("semi_implicit", 5e-4, 1e-6), (), N=20)
-    coarse, fine = Setting("semi_implicit", 4e-3, 1e-6), Setting("semi_implicit", 1e-3, 1e-6)
+    case = Case("lin_room", 1.0, 0.2, Setting("theta", 5e-4, 1e-6), (), N=20)
+    coarse, fine = Setting("theta", 4e-3, 1e-6), Setting("theta", 1e-3, 1e-6)
     errors = positions.errors_of(
         case, 0, [coarse, fine, coarse._replace(skin=0.06), coarse._replace(force_tolerance=3.0)]
     )
@@ -163,7 +163,7 @@ def test_a_crowd_begun_anew_stands_where_it_was_without_those_who_are_out():
 
 @pytest.mark.parametrize("gas", conservation.GASES)
 def test_a_lossless_crowd_keeps_its_energy_better_with_shorter_steps(gas):
-    long, short = (conservation.drift_of(gas, Setting("semi_implicit", dt, 1e-3), 2.0) for dt in (5e-3, 1e-3))
+    long, short = (conservation.drift_of(gas, Setting("theta", dt, 1e-3), 2.0) for dt in (5e-3, 1e-3))
     assert 0.0 < short.swing < 0.2 * long.swing < 0.01
 
 
@@ -194,10 +194,10 @@ def test_no_trial_has_more_seeds_than_its_reference():
 
 # --- The whole ----------------------------------------------------------------------------------------------
 
-EXACT = Setting("semi_implicit", 5e-4, 1e-6)
+EXACT = Setting("theta", 5e-4, 1e-6)
 TINY = plans.QUICK._replace(
     cases=(Case("lin_room", 1.0, 0.2, EXACT, (EXACT._replace(dt=1e-3),), 20),),
-    integrators=("semi_implicit",),
+    integrators=("theta",),
     steps=(2e-3, 1e-2),
     tolerances=(0.3,),
     stretch=0.1,
@@ -207,8 +207,8 @@ TINY = plans.QUICK._replace(
             "lin_room",
             1.0,
             15,
-            cells.explicit("semi_implicit", 2e-3, 1e-3, 3),
-            (cells.Trial("default", (), 3), cells.explicit("semi_implicit", 1e-2, 0.3, 2)),
+            cells.explicit("theta", 2e-3, 1e-3, 3),
+            (cells.Trial("default", (), 3), cells.explicit("theta", 1e-2, 0.3, 2)),
             (12,),
         ),
     ),

@@ -17,7 +17,7 @@ from studies.stress.judge import Case
 from studies.stress.random_scenes import RandomScenes, at_share, random_scenario
 from studies.stress.workers import Crashed, Hung, answers
 
-KIND = ("lin_dem (reset, kinetic)", "velocity_verlet")
+KIND = ("lin_dem (kept, kinetic)", "velocity_verlet")
 PASSIVE = kinds.passive(kinds.MODELS[KIND[0]])
 BOX = Scene.box(4.0, 4.0)
 

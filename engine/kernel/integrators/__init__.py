@@ -7,13 +7,13 @@ and corrects them to the end of the step. The integrator's type chooses, as with
 from typing import Any
 
 from engine.kernel.integrators.predictor import Predictor
-from engine.kernel.integrators.semi_implicit import SemiImplicit
+from engine.kernel.integrators.theta import Theta
 from engine.kernel.integrators.velocity_verlet import VelocityVerlet
 
 INTEGRATORS: dict[str, Any] = {
     "velocity_verlet": VelocityVerlet(),
     "predictor": Predictor(),
-    "semi_implicit": SemiImplicit(),
+    "theta": Theta(),
 }
 
-__all__ = ["INTEGRATORS", "Predictor", "SemiImplicit", "VelocityVerlet"]
+__all__ = ["INTEGRATORS", "Predictor", "Theta", "VelocityVerlet"]

@@ -11,7 +11,7 @@ from engine.kernel.dispatch import generic, type_constant
 
 
 @generic()
-def begin(integrator, model, persons, contacts, state, previous, dt):
+def begin(integrator, model, parameters, persons, pairs, wall_pairs, contacts, state, previous, dt):
     """Bring the velocities to where the step moves with them; the step before was `previous` long, s."""
 
 

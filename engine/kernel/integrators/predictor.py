@@ -20,22 +20,22 @@ class Predictor(NamedTuple):
 
 
 @begin.law(Predictor)
-def _first_half(integrator, model, persons, contacts, state, previous, dt):
+def _first_half(integrator, model, parameters, persons, pairs, wall_pairs, contacts, state, previous, dt):
     kick(is_present(model.rotation), persons, state.n, 0.5 * dt)
 
 
 @predict.law(Predictor)
 def _full_step(integrator, rotating, persons, n, dt):
     for i in range(n):
-        persons.fx_before[i], persons.fy_before[i] = persons.fx[i], persons.fy[i]
-        persons.torque_before[i] = persons.torque[i]
+        persons.previous_x[i], persons.previous_y[i] = persons.fx[i], persons.fy[i]
+        persons.previous_spin[i] = persons.torque[i]
     kick(rotating, persons, n, 0.5 * dt)
 
 
 @correct.law(Predictor)
 def _mean_force(integrator, rotating, persons, n, dt):
     for i in range(n):
-        persons.vx[i] += 0.5 * dt * (persons.fx[i] - persons.fx_before[i]) * persons.inv_mass[i]
-        persons.vy[i] += 0.5 * dt * (persons.fy[i] - persons.fy_before[i]) * persons.inv_mass[i]
+        persons.vx[i] += 0.5 * dt * (persons.fx[i] - persons.previous_x[i]) * persons.inv_mass[i]
+        persons.vy[i] += 0.5 * dt * (persons.fy[i] - persons.previous_y[i]) * persons.inv_mass[i]
         if rotating:
-            persons.spin[i] += 0.5 * dt * (persons.torque[i] - persons.torque_before[i]) * persons.inv_inertia[i]
+            persons.spin[i] += 0.5 * dt * (persons.torque[i] - persons.previous_spin[i]) * persons.inv_inertia[i]

@@ -15,7 +15,7 @@ class VelocityVerlet(NamedTuple):
 
 
 @begin.law(VelocityVerlet)
-def _first_half(integrator, model, persons, contacts, state, previous, dt):
+def _first_half(integrator, model, parameters, persons, pairs, wall_pairs, contacts, state, previous, dt):
     kick(is_present(model.rotation), persons, state.n, 0.5 * dt)
 
 

@@ -11,7 +11,16 @@ from engine.kernel.exponential import exp
 from engine.kernel.laws.absent import Absent, is_present
 from engine.kernel.laws.anisotropy import Cosine, Lambda, anisotropy
 from engine.kernel.laws.driving import Relaxation, drive
-from engine.kernel.laws.friction import Coulomb, Kinetic, Mindlin, MindlinReset, Viscous, friction, has_history
+from engine.kernel.laws.friction import (
+    Coulomb,
+    Kinetic,
+    Mindlin,
+    MindlinReset,
+    MindlinResetToZero,
+    Viscous,
+    friction,
+    has_history,
+)
 from engine.kernel.laws.normal_contact import Hertz, Hooke, normal
 from engine.kernel.laws.parameters import above, at_least, between, parameters_of
 from engine.kernel.laws.rotation import Rotation, inertia
@@ -41,6 +50,7 @@ __all__ = [
     "Lambda",
     "Mindlin",
     "MindlinReset",
+    "MindlinResetToZero",
     "Relaxation",
     "Rotation",
     "Viscous",

@@ -18,9 +18,9 @@ import numpy as np
 
 from engine.kernel.dispatch import Generic
 from engine.kernel.laws import KINDS
-from engine.kernel.laws.friction import viscosity
+from engine.kernel.laws.friction import friction_limit, viscosity
 
-GENERICS: tuple[Generic, ...] = (*dict.fromkeys(KINDS.values()), viscosity)
+GENERICS: tuple[Generic, ...] = (*dict.fromkeys(KINDS.values()), viscosity, friction_limit)
 PLAIN = (bool, int, float, complex, str, bytes, type(None))
 PACKAGE = __name__.partition(".")[0]
 DIGITS = 12  # of a hash

@@ -19,6 +19,7 @@ from engine.kernel.laws.parameters import above, at_least
 WITHOUT_MEMORY: set[type] = set()
 ARGUMENTS = 7  # of a law with a spring
 STRONG = 1e30  # N, a normal force under which a spring holds
+FAR = 1e6  # m, a displacement at which any spring slips
 FAST = 10.0  # m/s, beyond which a friction that has a limit has reached it
 
 
@@ -35,7 +36,22 @@ class Mindlin(NamedTuple):
 
 
 class MindlinReset(NamedTuple):
-    """The same spring and damper; when it slips the limit acts and the spring starts anew from zero."""
+    """The same spring and damper; when it slips the spring starts anew, from what it is beyond the limit.
+
+    Under steady slip the force is a sawtooth of mean mu F_n/2, at any time step.
+    """
+
+    k_t: Annotated[float, above(0.0, "Pa", "tangential stiffness")]
+    g_t: Annotated[float, at_least(0.0, "1/(m s)", "tangential damping")]
+    mu: Annotated[float, at_least(0.0, "1", "friction coefficient")]
+
+
+class MindlinResetToZero(NamedTuple):
+    """The same, but the spring starts anew from zero, and the limit acts for the whole step at which it slips.
+
+    The mean force under steady slip depends on the time step: (1 + 1/k) mu F_n/2 where k steps make a tooth of the
+    sawtooth.
+    """
 
     k_t: Annotated[float, above(0.0, "Pa", "tangential stiffness")]
     g_t: Annotated[float, at_least(0.0, "1/(m s)", "tangential damping")]
@@ -105,6 +121,22 @@ def _mindlin(p, overlap, radius, mass, v_t, F_n, displacement):
 
 @friction.law(MindlinReset)
 def _mindlin_reset(p, overlap, radius, mass, v_t, F_n, displacement):
+    alpha = math.sqrt(overlap * radius)
+    F_t = -alpha * (p.k_t * displacement + mass * p.g_t * v_t)
+    limit = p.mu * abs(F_n)
+    if abs(F_t) > limit:
+        direction = math.copysign(1.0, F_t)
+        damping = -direction * alpha * mass * p.g_t * v_t
+        tooth = limit - damping  # force of the spring at which the contact slips
+        if tooth <= 0.0:
+            return direction * limit, 0.0
+        spring = (abs(F_t) - limit) % tooth
+        return direction * max(spring + damping, -limit), -direction * spring / (alpha * p.k_t)
+    return F_t, displacement
+
+
+@friction.law(MindlinResetToZero)
+def _mindlin_reset_to_zero(p, overlap, radius, mass, v_t, F_n, displacement):
     F_t = -math.sqrt(overlap * radius) * (p.k_t * displacement + mass * p.g_t * v_t)
     limit = p.mu * abs(F_n)
     if abs(F_t) > limit:
@@ -143,10 +175,24 @@ def has_history(parameters: type) -> bool:
     return parameters not in WITHOUT_MEMORY
 
 
+def _limit_from_far_displacement(p, overlap, radius, mass, F_n):
+    return abs(friction(p, overlap, radius, mass, 0.0, F_n, FAR)[0]) if has_history(p) else math.inf
+
+
 @type_constant
 def needs_implicit(parameters: type) -> bool:
     """Whether friction follows the slip velocity so closely that it has to be solved for."""
     return parameters in WITHOUT_MEMORY and parameters is not Absent
+
+
+@generic(default=_limit_from_far_displacement)
+def friction_limit(p, overlap, radius, mass, F_n):
+    """Largest force of a spring, N; inf where there is none: such friction vanishes with the slip velocity."""
+
+
+@friction_limit.law(MindlinReset)
+def _coulomb_limit(p, overlap, radius, mass, F_n):
+    return p.mu * abs(F_n)
 
 
 def tangential_stiffness(law: Any, overlap: float, radius: float) -> float:
