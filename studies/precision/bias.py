@@ -62,7 +62,9 @@ def ratio(
     return Bias(quantity, float(value), low, high, n, used, margin)
 
 
-def difference(quantity: str, tested: NDArray[np.bool_], reference: NDArray[np.bool_]) -> Bias:
+def difference(
+    quantity: str, tested: NDArray[np.bool_], reference: NDArray[np.bool_], confidence: float = CONFIDENCE
+) -> Bias:
     """Difference of two shares over the same seeds, with the interval of Newcombe (1998), Stat. Med. 17, 2635.
 
     It is made of the shares' Wilson intervals and their correlation, and has a width also where no run or every run
@@ -72,7 +74,7 @@ def difference(quantity: str, tested: NDArray[np.bool_], reference: NDArray[np.b
     if n == 0:
         return Bias(quantity, np.nan, np.nan, np.nan, 0, (0, 0))
     p, q = float(tested.mean()), float(reference.mean())
-    (p_low, p_high), (q_low, q_high) = (wilson(int(hits.sum()), n, CONFIDENCE) for hits in (tested, reference))
+    (p_low, p_high), (q_low, q_high) = (wilson(int(hits.sum()), n, confidence) for hits in (tested, reference))
     r = _correlation(tested, reference)
     below = (p - p_low) ** 2 - 2 * r * (p - p_low) * (q_high - q) + (q_high - q) ** 2
     above = (p_high - p) ** 2 - 2 * r * (p_high - p) * (q - q_low) + (q - q_low) ** 2

@@ -1,8 +1,8 @@
 """Contact forces on persons and walls, as a run recorded them.
 
-`semi_implicit` has velocities half a step before the positions, so that what depends on velocity in a recorded force is
-that of half a step ago. Of a spring that starts anew from zero when it slips, the force in the very step of slipping is
-the limit.
+`theta` has velocities half a step before the positions, so that what depends on velocity in a recorded force is that of
+half a step ago. Of a spring that starts anew from zero when it slips, the force in the very step of slipping is the
+limit.
 """
 
 from typing import NamedTuple

@@ -9,6 +9,7 @@ from tests.engine.scenes import PAPERS
 K_T = 2 * 5e6 / (1.25 * 1.75)
 LAWS = {
     "reset": laws.MindlinReset(K_T, 0.8, 0.5),
+    "reset_to_zero": laws.MindlinResetToZero(K_T, 0.8, 0.5),
     "kept": laws.Mindlin(K_T, 0.8, 0.5),
     "kinetic": laws.Kinetic(0.5, 0.01),
     "coulomb": laws.Coulomb(0.5, 0.001),
@@ -24,14 +25,14 @@ def kinds(*of_contacts):
 @pytest.mark.parametrize("friction", LAWS)
 @pytest.mark.parametrize("wall_friction", LAWS)
 def test_a_friction_keyword_is_its_law_between_persons_and_at_walls(friction, wall_friction):
-    model = models.lin_dem(friction=friction, wall_friction=wall_friction)
+    model = models.lin_dem(friction=friction, wall_friction=wall_friction, mu=0.5)
     assert kinds(model.friction, model.wall_friction) == kinds(LAWS[friction], LAWS[wall_friction])
 
 
-def test_the_default_is_a_spring_that_is_reset_and_kinetic_friction_at_walls_that_push():
+def test_the_default_is_a_spring_that_is_kept_and_kinetic_friction_at_walls_that_push():
     model = models.lin_dem()
     assert set(LAWS) == set(models.FRICTION)
-    assert kinds(model.friction, model.wall_friction) == kinds(LAWS["reset"], LAWS["kinetic"])
+    assert kinds(model.friction, model.wall_friction) == kinds(LAWS["kept"]._replace(mu=0.3), LAWS["kinetic"])
     assert kinds(model.social, model.wall_social) == kinds(laws.Exponential(300.0, 0.05), laws.Exponential(300.0, 0.05))
 
 

@@ -67,7 +67,7 @@ def test_the_point_where_two_walls_meet_acts_once() -> None:
 
 def test_friction_is_as_large_as_the_law_says() -> None:
     """A person who is driven obliquely slides along the wall, far faster than v_0 = 0.01 m/s, and drags it along."""
-    model = models.lin_dem(A=0.0, mu=0.4)._replace(rotation=laws.Rotation(1e30))  # who rolls has no friction
+    model = models.lin_dem(A=0.0, wall_mu=0.4)._replace(rotation=laws.Rotation(1e30))  # who rolls has no friction
     ahead = Exit((2.0, 19.0), (2.0, 20.0), (1.0, 0.0))
     run = pressed(model, v_d=2.0, walls=((1.0, -2.0, 1.0, 30.0),), line=ahead)
     sliding = {"sample": slice(2, 12)}

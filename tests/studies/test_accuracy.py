@@ -84,7 +84,7 @@ def test_the_interval_covers_the_planted_bias_about_as_often_as_it_says():
         a, b = (100.0 * f * (1.0 + 0.1 * rng.standard_normal(30)) for f in (1.03, 1.0))
         found = bias.ratio("", (a, np.ones(30)), (b, np.ones(30)))
         covered += found.low <= 0.03 <= found.high
-    assert 0.90 <= covered / repeats <= 0.99
+    assert 0.84 <= covered / repeats <= 0.96  # of 90 %
 
 
 def test_pairing_takes_out_what_the_seeds_have_in_common():
@@ -127,7 +127,7 @@ def test_no_blocked_run_of_few_proves_nothing_and_of_many_does():
 def test_the_interval_of_a_paired_difference_is_the_one_worked_by_hand():
     tested = np.array([1] * 48 + [0] * 2, bool)  # 36, 12, 2 and 0 of 50 pairs: phi = -24/209.2
     reference = np.array([1] * 36 + [0] * 12 + [1] * 2, bool)
-    found = bias.difference("", tested, reference)
+    found = bias.difference("", tested, reference, confidence=0.95)
     assert (found.value, found.low, found.high) == pytest.approx((0.2, 0.0569, 0.3404), abs=6e-5)
 
 
@@ -224,9 +224,16 @@ def results(tmp_path_factory):
 
 def test_a_small_study_tells_all_its_parts(results, tmp_path):
     text = page.tables(results)
-    for part in ("Chosen levels", "Error of the positions", "Energy", "Bias of the statistics", "What skipping saves"):
+    for part in (
+        "Levels",
+        "Friction at a step",
+        "Error of the positions",
+        "Energy",
+        "Bias of the statistics",
+        "What skipping saves",
+    ):
         assert f"## {part}" in text
-    assert "Refused, beyond the longest step: semi_implicit at 0.01 s" in text
+    assert "Refused, beyond the longest step: theta at 0.01 s" in text
     assert "refused: dt 0.01 s is beyond" in text
     assert "3 all out" in text
     assert not results.broken()

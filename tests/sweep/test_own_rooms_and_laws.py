@@ -43,7 +43,7 @@ def folder(tmp_path, monkeypatch):
 
 def test_a_room_in_a_file_has_every_option_and_its_own_keywords(folder):
     (folder / "my_rooms.py").write_text(ROOM.replace("LAW", ""))
-    scenario = room_named("my_rooms.py:my_room")(v_d=1.3, N=3, accuracy="1mm", blocked_after=7.0)
+    scenario = room_named("my_rooms.py:my_room")(v_d=1.3, N=3, accuracy="0.1mm", blocked_after=7.0)
     assert (scenario.crowd.N, scenario.crowd.v_d, scenario.options.blocked_after) == (3, (1.3, 1.3), 7.0)
     assert scenario.numerics.dt < room_named("my_rooms.py:my_room")().numerics.dt
 
