@@ -72,8 +72,8 @@ tolerance of 1 mN (the reference).
 {_certificate(results)}
 
 Each entry is default over reference, less 1, with its {CONFIDENCE:.0%} interval; blocked share: the difference,
-in percentage points. "shown": the interval lies within +-{MARGIN:.0%} (delays above 2 s: +-{LONG_DELAYS[2.0]:.0%}), so that
-the two are the same within that margin. "open": the interval reaches beyond; more seeds would decide, and until then
+in percentage points. "shown": the interval lies within +-{MARGIN:.0%} (delays above 2 s: +-{LONG_DELAYS[2.0]:.0%}), so
+that the two are the same within that margin. "open": the interval reaches beyond; more seeds would decide, and until then
 the number is not certified. "NO": it lies outside. Friction is that of the contacts between persons, weighted by slip
 speed, at the step of the default and of the reference, each against a quarter of that step. Runs of the two are
 independent: seeds decide nothing about a jam. Delays: from the 10th exit to four fifths of the crowd.
@@ -182,8 +182,8 @@ def _frictions(frictions: list[Friction]) -> str:
     notes = [
         f"Sums of abs(F_t) over those of abs(F_n), of all contacts from {START:g} s on; intervals of 90 %, "
         "seeds resampled.",
-        "At walls whose friction is kinetic the plain sum also counts persons who hardly slip, whose force swings about "
-        "nothing: it grows with the step, while what such friction does, weighted by slip speed, does not.",
+        "At walls whose friction is kinetic the plain sum also counts persons who hardly slip, whose force swings "
+        "about nothing: it grows with the step, while what such friction does, weighted by slip speed, does not.",
     ]
     return f"{_table(head, rows)}\n\n{_bullets(notes)}"
 
@@ -260,7 +260,7 @@ def _biases(judged: list[Judged]) -> str:
     notes = [
         f"The same seeds with both settings. Relative bias of means, difference of blocked shares in percentage "
         f"points, with intervals of {CONFIDENCE:.0%} (bootstrap over seeds; shares: Newcombe 1998).",
-        f"shown: the interval lies within the margin; violated: wholly outside; not shown: the seeds do not "
+        "shown: the interval lies within the margin; violated: wholly outside; not shown: the seeds do not "
         "decide. Used: runs that the statistic rests on, setting/reference.",
         "Blocked, unstable and time-limit runs are counted and never averaged into a clearance time. Delays: from the "
         "10th exit to four fifths of the crowd.",
