@@ -50,7 +50,7 @@ class Level(NamedTuple):
 
 
 LEVELS = {
-    "2%": Level("theta", 5e-3, 0.3, 1e-3),
+    "2%": Level("theta", 8e-3, 0.3, 1e-3),
     "1mm": Level("theta", 5e-3, 1e-2, 1e-4),
     "0.1mm": Level("theta", 1e-3, 1e-3, 1e-5),
 }

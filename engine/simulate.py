@@ -51,6 +51,9 @@ class Run:
     unstable_person, unstable_partner : int
         The person who was pressed or thrown through others, or is nowhere, if unstable, and the other person of that
         contact, if there is one; else -1.
+    contact_sums : (2, 4) float
+        Sums over all contacts between persons (0), at walls (1), and all steps: impulses of friction and of normal
+        forces, N s, and each times the slip speed, N m; the third is the energy that friction took, J.
     """
 
     scenario: Scenario
@@ -70,6 +73,7 @@ class Run:
     substepped_steps: int
     unstable_person: int
     unstable_partner: int
+    contact_sums: np.ndarray
 
     @property
     def N(self) -> int:
@@ -188,4 +192,5 @@ def _run(scenario: Scenario, start: Start, simulation: Simulation) -> Run:
         substepped_steps=int(state["substepped_steps"]),
         unstable_person=unstable_person,
         unstable_partner=unstable_partner,
+        contact_sums=state["contact_sums"].copy(),
     )

@@ -6,9 +6,8 @@ import joblib
 import numpy as np
 from numpy.typing import NDArray
 
-from engine import Run, Scenario, simulate
+from engine import Scenario, simulate
 from engine.errors import require
-from engine.scene import from_closest_points
 from sweep.running.shipping import PackedScenario, packed, unpacked
 
 Floats = NDArray[np.float64]
@@ -26,7 +25,7 @@ class Comparison(NamedTuple):
     between : str
         "persons" or "persons and walls".
     quantity : str
-        Sum of abs(F_t) over that of abs(F_n) of all contacts and samples, plain or weighted by slip speed.
+        Sum of abs(F_t) over that of abs(F_n) of all contacts and steps, plain or weighted by slip speed.
     coarse, fine : float
         At the given step, and at a quarter of it, 1.
     difference, low, high : float
@@ -50,31 +49,27 @@ class Comparison(NamedTuple):
         return "NO" if self.low > margin or self.high < -margin else "open"
 
 
-def compare_steps(scenarios: list[Scenario], start: float = 10.0, jobs: int = 2) -> list[Comparison]:
+def compare_steps(scenarios: list[Scenario], jobs: int = 2) -> list[Comparison]:
     """Run scenarios at their step and at a quarter of it, and compare the friction of their contacts.
 
-    The scenarios are those of one room with different seeds; they need samples with contacts. The runs at the shorter
-    step are of the same seeds, which decide nothing in a jam: the two sets count as independent.
+    The scenarios are those of one room with different seeds. The runs at the shorter step are of the same seeds, which
+    decide nothing in a jam: the two sets count as independent.
 
     Parameters
     ----------
     scenarios : list of Scenario
         At least 2.
-    start : float
-        Samples before this time are left out, s.
     jobs : int
         Worker processes.
 
     Raises
     ------
     BadInput
-        If a scenario records no contacts, or there are fewer than two.
+        If there are fewer than two scenarios.
     """
     require(len(scenarios) > 1, "seeds", len(scenarios), "leave no interval", "give 2 or more")
-    recorded = all(s.options.contacts and s.options.record == "full" for s in scenarios)
-    require(recorded, "scenarios", "without contacts", "have no friction to compare", "record contacts, record='full'")
     finer = [s.with_options(dt=s.numerics.dt / FINER) for s in scenarios]
-    tasks = (joblib.delayed(_sums_of)(packed(s), start) for s in [*scenarios, *finer])
+    tasks = (joblib.delayed(_sums_of)(packed(s)) for s in [*scenarios, *finer])
     sums = np.array(joblib.Parallel(jobs)(tasks)).reshape(2, len(scenarios), len(BETWEEN), len(QUANTITIES), 2)
     return [
         _compared(between, quantity, *sums[:, :, b, q])
@@ -95,37 +90,5 @@ def _compared(between: str, quantity: str, coarse: Floats, fine: Floats) -> Comp
     return Comparison(between, quantity, *map(float, (*values, difference, low, high)))
 
 
-def _sums_of(shipped: Scenario | PackedScenario, start: float) -> Floats:
-    return friction_sums(simulate(unpacked(shipped)), start)
-
-
-def friction_sums(run: Run, start: float) -> Floats:
-    """Sums over all samples from `start` on of abs(F_t) and abs(F_n), plain and times the slip speed.
-
-    Returns
-    -------
-    (2, 2, 2) float
-        Of contacts between persons and at walls; plain (N) and weighted (N m/s); tangential and normal.
-    """
-    samples, walls = run.samples, np.array(run.scenario.scene.walls).reshape(-1, 4)
-    assert samples is not None
-    row = np.repeat(np.arange(samples.time.size), samples.row_size)
-    late = samples.time[row] >= start
-    k, i, j = row[late], samples.contact_i[late], samples.contact_j[late]
-    F_t, F_n = abs(samples.contact_F_t[late]), abs(samples.contact_F_n[late])
-    slip, sums = np.zeros(k.size), np.zeros((2, 2, 2))
-    radius = run.start.radius
-    for where, at_walls in enumerate((j >= 0, j < 0)):
-        k_, i_, j_ = k[at_walls], i[at_walls], j[at_walls]
-        x, y, vx, vy = (getattr(samples, name)[k_, i_] for name in ("x", "y", "vx", "vy"))
-        turn = radius[i_] * samples.spin[k_, i_]
-        if where == 0:
-            dx, dy = x - samples.x[k_, j_], y - samples.y[k_, j_]
-            vx, vy = vx - samples.vx[k_, j_], vy - samples.vy[k_, j_]
-            turn = turn + radius[j_] * samples.spin[k_, j_]
-        else:
-            dx, dy = from_closest_points(walls[-1 - j_], x, y)
-        slip[at_walls] = abs((vy * dx - vx * dy) / np.hypot(dx, dy) - turn)
-        for q, weight in enumerate((1.0, slip[at_walls])):
-            sums[where, q] = (F_t[at_walls] * weight).sum(), (F_n[at_walls] * weight).sum()
-    return sums
+def _sums_of(shipped: Scenario | PackedScenario) -> Floats:
+    return simulate(unpacked(shipped)).contact_sums

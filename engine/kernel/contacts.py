@@ -60,6 +60,16 @@ def slip_of_turning(persons, c, rotating, v_n, v_t):
 
 
 @inlined_function
+def add_to_sums(state, row, J_t, J_n, slip):
+    """Count what a contact did in a step: impulses, N s, at a slip velocity, m/s."""
+    J_t, J_n, slip = abs(J_t), abs(J_n), abs(slip)
+    state.contact_sums[row, 0] += J_t
+    state.contact_sums[row, 1] += J_n
+    state.contact_sums[row, 2] += J_t * slip
+    state.contact_sums[row, 3] += J_n * slip
+
+
+@inlined_function
 def _relative(c, vx, vy, spin, radius, rotating):
     i, j, nx, ny = c.i, c.j, c.nx, c.ny
     ux, uy, turn = vx[i], vy[i], 0.0

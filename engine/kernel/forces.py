@@ -8,6 +8,7 @@ import math
 
 from engine.kernel.compiled import inlined_function, step_function
 from engine.kernel.contacts import (
+    add_to_sums,
     end_acts,
     extrapolated_velocity,
     from_closest_point,
@@ -51,9 +52,9 @@ def forces(integrator, model, scene, parameters, persons, pairs, wall_pairs, con
         _list_contacts(model.wall_friction, persons, wall_pairs, contacts, first, count, scratch, state, True)
     n, every, p, w = state.contacts, state.contacts + state.wall_contacts, pairs.history, wall_pairs.history
     return (
-        _contact_forces(model.friction, model.normal, integrator, rotating, persons, contacts, 0, n, p, state),
+        _contact_forces(model.friction, model.normal, integrator, rotating, persons, contacts, 0, n, p, state, 0),
         _contact_forces(
-            model.wall_friction, model.wall_normal, integrator, rotating, persons, contacts, n, every, w, state
+            model.wall_friction, model.wall_normal, integrator, rotating, persons, contacts, n, every, w, state, 1
         ),
     )
 
@@ -176,7 +177,9 @@ def _list_contacts(friction_law, persons, pairs, contacts, first, count, scratch
 
 
 @step_function
-def _contact_forces(friction_law, normal_law, integrator, rotating, persons, contacts, first, last, history, state):
+def _contact_forces(
+    friction_law, normal_law, integrator, rotating, persons, contacts, first, last, history, state, at_walls
+):
     """Normal and tangential forces of listed contacts; returns the largest overlap."""
     deepest = 0.0
     for k in range(first, last):
@@ -205,4 +208,5 @@ def _contact_forces(friction_law, normal_law, integrator, rotating, persons, con
             if has_history(friction_law):
                 history[c.entry] = left + ahead
             push(persons, c, c.F_n, c.F_t)
+            add_to_sums(state, at_walls, c.F_t * state.dt, c.F_n * state.dt, v_t)
     return deepest

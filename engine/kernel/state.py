@@ -114,6 +114,9 @@ RUN_STATE = np.dtype(
         ("speed", np.float64),  # m/s, largest now
         ("max_overlap", np.float64),  # m, largest ever
         ("max_speed", np.float64),  # m/s
+        # Sums over contacts and steps, first between persons, then at walls: impulses of friction and of normal forces,
+        # N s, and each times the slip speed, N m
+        ("contact_sums", np.float64, (2, 4)),
     ],
     align=True,
 )

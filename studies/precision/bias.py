@@ -92,7 +92,7 @@ def compare(tested: xr.Dataset, reference: xr.Dataset, ranks: Iterable[int] = ()
     found = [ratio("clearance time", _times(tested), _times(reference))]
     found += [ratio(f"time of exit {n}", _times(tested, n), _times(reference, n)) for n in ranks]
     blocked = [measures.outcome_is(ds, *BLOCKED).values for ds in (tested, reference)]
-    found.append(difference("blocked share", *blocked))
+    found.append(difference("blocked share", blocked[0], blocked[1]))
     of, of_reference = _delays(tested), _delays(reference)
     for name, margin in {"mean delay": MARGIN, **{_long(d): m for d, m in LONG_DELAYS.items()}}.items():
         found.append(ratio(name, (of[name], of["number"]), (of_reference[name], of_reference["number"]), margin))

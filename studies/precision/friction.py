@@ -7,7 +7,7 @@ from engine.rooms import ROOMS
 from studies.precision.cells import Cell, Trial
 from sweep.numerics import Comparison, compare_steps
 
-DURATION, START, EVERY = 60.0, 10.0, 0.1  # s
+DURATION = 60.0  # s
 
 
 class Friction(NamedTuple):
@@ -25,10 +25,9 @@ def measure(cells: tuple[Cell, ...], seeds: int, jobs: int) -> list[Friction]:
     for cell in cells:
         for trial in (*cell.trials[:1], cell.reference):
             scenarios = [_scenario(cell, trial, seed) for seed in range(seeds)]
-            found.append(Friction(cell, trial, scenarios[0].numerics.dt, compare_steps(scenarios, START, jobs)))
+            found.append(Friction(cell, trial, scenarios[0].numerics.dt, compare_steps(scenarios, jobs)))
     return found
 
 
 def _scenario(cell: Cell, trial: Trial, seed: int) -> Scenario:
-    recorded = {"time_limit": DURATION, "record_every": EVERY, "contacts": True, "seed": seed}
-    return ROOMS[cell.room](v_d=cell.v_d, N=cell.N, **dict(trial.keywords), **recorded)
+    return ROOMS[cell.room](v_d=cell.v_d, N=cell.N, seed=seed, time_limit=DURATION, **dict(trial.keywords))

@@ -9,7 +9,7 @@ from studies.precision.bias import CONFIDENCE, LONG_DELAYS, MARGIN, NOT_SHOWN, S
 from studies.precision.cells import Judged
 from studies.precision.conservation import SIDE, SPEED, Drift
 from studies.precision.conservation import N as GAS_N
-from studies.precision.friction import START, Friction
+from studies.precision.friction import DURATION, Friction
 from studies.precision.front import pareto
 from studies.precision.levels import Level, SpeedUp
 from studies.precision.positions import Found, Point
@@ -73,8 +73,8 @@ tolerance of 1 mN (the reference).
 
 Each entry is default over reference, less 1, with its {CONFIDENCE:.0%} interval; blocked share: the difference,
 in percentage points. "shown": the interval lies within +-{MARGIN:.0%} (delays above 2 s: +-{LONG_DELAYS[2.0]:.0%}), so
-that the two are the same within that margin. "open": the interval reaches beyond; more seeds would decide, and until then
-the number is not certified. "NO": it lies outside. Friction is that of the contacts between persons, weighted by slip
+that the two are the same within that margin. "open": the interval reaches beyond; more seeds would decide, and until
+then the number is not certified. "NO": it lies outside. Friction is that of the contacts between persons, weighted by slip
 speed, at the step of the default and of the reference, each against a quarter of that step. Runs of the two are
 independent: seeds decide nothing about a jam. Delays: from the 10th exit to four fifths of the crowd.
 
@@ -180,10 +180,8 @@ def _frictions(frictions: list[Friction]) -> str:
         for told in [_friction(c).rpartition(" ")[::2]]
     ]
     notes = [
-        f"Sums of abs(F_t) over those of abs(F_n), of all contacts from {START:g} s on; intervals of 90 %, "
-        "seeds resampled.",
-        "At walls whose friction is kinetic the plain sum also counts persons who hardly slip, whose force swings "
-        "about nothing: it grows with the step, while what such friction does, weighted by slip speed, does not.",
+        f"Sums of abs(F_t) over those of abs(F_n), of all contacts and steps in {DURATION:g} s; intervals of "
+        "90 %, seeds resampled.",
     ]
     return f"{_table(head, rows)}\n\n{_bullets(notes)}"
 

@@ -9,7 +9,7 @@ from studies.precision.settings import Setting
 from sweep.numerics import FINER
 
 INTEGRATORS = ("velocity_verlet", "predictor", "theta")
-STEPS = (2e-4, 5e-4, 1e-3, 2e-3, 4e-3, 5e-3, 1e-2)  # s
+STEPS = (5e-4, 1e-3, 2e-3, 4e-3, 5e-3, 8e-3)  # s
 
 
 class Plan(NamedTuple):
@@ -52,18 +52,18 @@ FULL = Plan(
     steps=STEPS,
     tolerances=(1e-3, 1e-2, 0.3),
     seeds=3,
-    stretch=10.0,
+    stretch=5.0,
     gas_time=20.0,
     cells=(
-        certified("lin_room", 1.0, 100, seeds=600),
-        certified("lin_room", 1.6, 100, seeds=600),
-        certified("lin_room", 1.0, 200, seeds=250),
-        certified("lin_room", 1.8, 200, seeds=250),
-        certified("parisi_room", 1.5, 200, seeds=400),
-        certified("parisi_room", 4.0, 200, seeds=400),
-        certified("parisi_room", 8.0, 200, seeds=400),
+        certified("lin_room", 1.0, 100, seeds=400),
+        certified("lin_room", 1.6, 100, seeds=400),
+        certified("lin_room", 1.0, 200, seeds=150),
+        certified("lin_room", 1.8, 200, seeds=150),
+        certified("parisi_room", 1.5, 200, seeds=300),
+        certified("parisi_room", 4.0, 200, seeds=300),
+        certified("parisi_room", 8.0, 200, seeds=300),
     ),
-    friction_seeds=120,
+    friction_seeds=60,
     speed_ups=(("parisi_room", 4.0, 200, 3), ("lin_room", 1.6, 100, 5)),
     repeats=5,
     compiling=True,

@@ -11,20 +11,19 @@ from sweep.rooms import Room
 
 MARGIN = 0.02
 FAILED = 1  # exit code
-SET = {"seed", "time_limit", "record_every", "contacts", "record"}  # keywords of a room that the check sets
+SET = {"seed", "time_limit"}  # keywords of a room that the check sets
 VERDICTS = {"yes": "the same within 2 %", "NO": "DIFFERENT", "open": "not decided: give more --seeds"}
 
 
 def _command(name: str, room: Room) -> click.Command:
-    def check(seeds: int, jobs: int, duration: float, start: float, **parameters: Any) -> None:
-        _check(room, seeds, jobs, duration, start, parameters)
+    def check(seeds: int, jobs: int, duration: float, **parameters: Any) -> None:
+        _check(room, seeds, jobs, duration, parameters)
 
     own = [option for option in options_of(room) if option.name not in SET]
     more = [
         click.Option(["--seeds"], type=int, default=120, show_default=True, help="Runs at each step."),
         click.Option(["--jobs"], type=int, default=2, show_default=True, help="Worker processes."),
         click.Option(["--duration"], type=float, default=60.0, show_default=True, help="Time that is simulated, s."),
-        click.Option(["--start"], type=float, default=10.0, show_default=True, help="From when samples count, s."),
     ]
     words = f"{first_line(room)}\n\n\b\njamsweep check-numerics {name} --v-d 1.6 --N 100"
     return click.Command(name, params=[*more, *own], callback=check, help=words, short_help=first_line(room))
@@ -43,17 +42,13 @@ def check_numerics() -> None:
     """  # noqa: D301  click reads \b as a character
 
 
-def _check(room: Room, seeds: int, jobs: int, duration: float, start: float, parameters: dict[str, Any]) -> None:
+def _check(room: Room, seeds: int, jobs: int, duration: float, parameters: dict[str, Any]) -> None:
     require(seeds > 1, "seeds", seeds, "leave no interval", "give 2 or more")
     require(jobs > 0, "jobs", jobs, "is not a whole number above 0", "give the number of worker processes")
-    require(
-        0 <= start < duration, "start", f"{start:g} s", f"is not within the {duration:g} s", "give a longer duration"
-    )
-    recorded = {"time_limit": duration, "record_every": 0.1, "contacts": True, "record": "full"}
-    scenarios = [room(seed=seed, **parameters | recorded) for seed in range(seeds)]
+    scenarios = [room(seed=seed, time_limit=duration, **parameters) for seed in range(seeds)]
     dt = scenarios[0].numerics.dt
-    click.echo(f"{seeds} runs of {duration:g} s at {dt:g} s and at {dt / FINER:g} s, contacts from {start:g} s on")
-    found = compare_steps(scenarios, start, jobs)
+    click.echo(f"{seeds} runs of {duration:g} s at {dt:g} s and at {dt / FINER:g} s")
+    found = compare_steps(scenarios, jobs)
     for comparison in found:
         click.echo(_sentence(comparison))
     if any(comparison.verdict(MARGIN) == "NO" for comparison in found):

@@ -97,3 +97,19 @@ def test_a_tangential_spring_gives_back_no_more_than_it_took(overlap, v_t, fract
     gained = 0.5 * stiffness * (after**2 - before**2) + F_t * v_t * dt
     assert gained <= 1e-9 * (1.0 + 0.5 * stiffness * before**2)
     assert abs(F_t) <= 0.5 * F_n * (1 + 1e-12)
+
+
+@pytest.mark.parametrize("kappa", [2e4, 2.4e5, 1e7])  # kg/(m s)
+@pytest.mark.parametrize("dt", [1e-3, 5e-3, 2e-2])
+def test_solved_friction_and_damping_only_take_energy_at_any_step(kappa, dt):
+    """A pressed heap without springs: steps up to 10,000 times as long as its friction takes to act."""
+    rng = np.random.default_rng(5)
+    column, row = np.divmod(np.arange(25), 5)
+    vx, vy = 0.2 * rng.standard_normal((2, 25))
+    crowd = Crowd.given(0.56 * column, 0.56 * row, vx, vy, 0.0, 0.3, 70.0, 0.0)
+    model = models.parisi_dorso(**UNDRIVEN, k_n=1e-6, kappa=kappa, g=500.0)
+    options = Options(dt=dt, time_limit=20 * dt, record_every=dt)
+    samples = simulate(Scenario(Scene(((-9.0, -0.26, 9.0, -0.26),)), crowd, model, options)).samples
+    kinetic = (samples.vx**2 + samples.vy**2).sum(axis=1)
+    assert (np.diff(kinetic) <= 1e-9 * kinetic[0]).all()
+    assert kinetic[-1] < 0.9 * kinetic[0]

@@ -17,7 +17,7 @@ dampers are taken at the velocities extrapolated from the last two steps.
 from typing import NamedTuple
 
 from engine.kernel.compiled import inlined_function, step_function
-from engine.kernel.contacts import inverse_masses, relative_velocity, strike
+from engine.kernel.contacts import add_to_sums, inverse_masses, relative_velocity, strike
 from engine.kernel.dispatch import only_for
 from engine.kernel.exponential import exp
 from engine.kernel.integrators.interface import begin, correct, predict
@@ -69,8 +69,8 @@ def _leap(integrator, model, parameters, persons, pairs, wall_pairs, contacts, s
         )
         if change < tolerance:
             break
-    _keep(model.friction, contacts, 0, between, p, h)
-    _keep(model.wall_friction, contacts, between, every, w, h)
+    _keep(model.friction, contacts, 0, between, p, h, state, 0)
+    _keep(model.wall_friction, contacts, between, every, w, h, state, 1)
 
 
 @predict.law(Theta)
@@ -124,11 +124,12 @@ def _sweep_over(law, persons, contacts, first, last, rotating, h, slowing, toler
 
 
 @only_for(needs_implicit, otherwise=None)
-def _keep(law, contacts, first, last, history, h):
+def _keep(law, contacts, first, last, history, h, state, at_walls):
     """Keep the friction of this step over the normal force, for the next."""
     for k in range(first, last):
         c = contacts[k]
         history[c.entry] = c.J_t / (h * c.F_elastic) if c.F_elastic > 0.0 else 0.0
+        add_to_sums(state, at_walls, c.J_t, h * c.F_elastic + c.J_n, c.slip)
 
 
 @step_function
