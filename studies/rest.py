@@ -15,11 +15,11 @@ FOLDER = Path("results/rest")
 VARIANTS = (  # of what the friction of Lin's model may be
     "kept 0.3",
     "reset",
-    "reset to zero, 1 ms",
-    "reset, Coulomb walls",
-    "reset, reset walls",
+    "reset to zero (1 ms)",
+    "reset / Coulomb",
+    "reset / reset",
     "kept 0.5",
-    "kept 0.5, kept walls",
+    "kept 0.5 / kept",
 )
 SLOW = 20.0  # s, a wait that ended
 HEAD = ("runs", "tested", "blocked", "slow", "frozen early", "agree", "simulated time saved")

@@ -74,9 +74,9 @@ tolerance of 1 mN (the reference).
 Each entry is default over reference, less 1, with its {CONFIDENCE:.0%} interval; blocked share: the difference,
 in percentage points. "shown": the interval lies within +-{MARGIN:.0%} (delays above 2 s: +-{LONG_DELAYS[2.0]:.0%}), so
 that the two are the same within that margin. "open": the interval reaches beyond; more seeds would decide, and until
-then the number is not certified. "NO": it lies outside. Friction is that of the contacts between persons, weighted by slip
-speed, at the step of the default and of the reference, each against a quarter of that step. Runs of the two are
-independent: seeds decide nothing about a jam. Delays: from the 10th exit to four fifths of the crowd.
+then the number is not certified. "NO": it lies outside. Friction is that of the contacts between persons, weighted by
+slip speed, at the step of the default and of the reference, each against a quarter of that step. Seeds decide nothing
+about a jam. Delays: from the 10th exit to four fifths of the crowd.
 
 ![{FIGURES["accuracy.png"]}](accuracy.png)
 

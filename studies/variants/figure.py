@@ -25,7 +25,7 @@ def plot(found: xr.Dataset) -> Figure:
     """Above: paired difference of scores to the best variant. Below: what each statement adds to each score."""
     ordered = found.sel(variant=ranked(found))
     figure, (above, below) = plt.subplots(
-        2, 1, figsize=(figures.COLUMN, 6.6), gridspec_kw={"height_ratios": [1.0, 1.5]}
+        2, 1, figsize=(figures.COLUMN, 8.0), gridspec_kw={"height_ratios": [1.2, 1.5]}
     )
     _differences(above, ordered)
     _terms(figure, below, ordered)
@@ -51,9 +51,9 @@ def _differences(axis: Axes, found: xr.Dataset) -> None:
     axis.set_xticks([-100, -10, 0, 10, 100], ["-100", "-10", "0", "10", "100"])
     low = float(apart.difference_low.min())
     axis.set_xlim(min(1.5 * low, -3.0), 1.6 * float(apart.difference_high.max()))
-    axis.set_yticks(range(len(names)), [f"{name} (default)" if name == DEFAULT else name for name in names])
+    axis.set_yticks(range(len(names)), [f"{name} (default)" if name == DEFAULT else name for name in names], fontsize=6)
     axis.invert_yaxis()
-    axis.set_xlabel(f"score less that of {best} (1)")
+    axis.set_xlabel(f"score less that of\n{best} (1)")
     axis.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, handletextpad=0.2, columnspacing=0.8)
 
 

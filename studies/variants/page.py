@@ -120,8 +120,8 @@ The paper leaves open what slip does to the tangential spring, and more. `make s
 {len(VARIANTS)} variants over the same {found.attrs["seeds"]} seeds and holds each against {len(TARGETS)} published
 numbers with one score. `make study-variants DOCS=1` writes this page.
 
-{why_default(found)} Ruled out: {", ".join(out) or "none"}. Not told apart from the best:
-{", ".join(alike) or "none"}.
+{why_default(found)} Ruled out: {"; ".join(out) or "none"}.
+Not told apart from the best: {"; ".join(alike) or "none"}.
 
 ![Scores of the variants and what adds to them](variants.png)
 
@@ -129,8 +129,9 @@ numbers with one score. `make study-variants DOCS=1` writes this page.
 
 {markdown(kinds)}
 
-Friction is a spring that is kept at the Coulomb limit when it slips ("kept"), or starts anew: from what it is beyond
-the limit ("reset"), a sawtooth of mean mu F_n/2, or from zero, with the limit acting for a whole step
+A name is the friction between persons, with its coefficient, and behind the stroke that at walls where it differs from
+the default. Friction is a spring that is kept at the Coulomb limit when it slips ("kept"), or starts anew: from what it
+is beyond the limit ("reset"), a sawtooth of mean mu F_n/2, or from zero, with the limit acting for a whole step
 ("reset_to_zero"), which at 1 ms, the paper's step, is that sawtooth and some 20 % more; or it has no spring:
 mu tanh(v_t/0.01 m/s) ("kinetic"), mu sign(v_t) ("coulomb"). Without rotation `inertia="none"` takes the
 place of what a variant says. Variants that need a law that the engine lacks are not among them: beta against the

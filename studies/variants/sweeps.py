@@ -12,7 +12,7 @@ from sweep import Grid, sweep
 
 FOLDER = Path("results/variants")
 SEEDS, QUICK_SEEDS = 12, 3
-QUICK_VARIANTS = ("kept 0.3", "reset", "reset, reset walls", "kept 0.5, kept walls")
+QUICK_VARIANTS = ("kept 0.3", "reset", "reset / reset", "kept 0.5 / kept")
 
 
 class Cell(NamedTuple):
