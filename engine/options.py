@@ -183,9 +183,9 @@ def _longest_step(model: Any, integrator: str, radius: float, mass: float) -> tu
 
 
 def _round_down(step: float) -> float:
-    """To one significant digit."""
+    """The largest of 1, 2, 4, 5, 8 times a power of ten, which divide a second, that is not above."""
     power = 10.0 ** math.floor(math.log10(step) + 1e-9)
-    return float(f"{math.floor(step / power + 1e-9) * power:.1g}")
+    return float(f"{max(m for m in (1, 2, 4, 5, 8) if m * power <= step * (1 + 1e-9)) * power:.1g}")
 
 
 def with_options(room: Callable[..., Made]) -> Callable[..., Made]:
