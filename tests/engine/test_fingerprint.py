@@ -15,10 +15,11 @@ from engine.fingerprint import fingerprint
 ENGINE = Path(engine.__file__).parent
 CODE = """
 import json, sys
-from engine import FINGERPRINT, rooms, simulate
+from engine import FINGERPRINT, Crowd, Model, Options, Scenario, laws, rooms, simulate
 from engine.kernel.step import advance
 from sweep.schema import run_key
-scenario = rooms.lin_room(N=4, size=4.0, time_limit=0.1)
+walking = Model(laws.Relaxation(0.5))  # compiles fastest
+scenario = Scenario(rooms.square_room(4.0, 1.0), Crowd.uniform(4, (0.0, 4.0, 0.0, 4.0)), walking, Options(time_limit=0.1))
 simulate(scenario)
 print(json.dumps([FINGERPRINT, run_key(scenario), sum(advance.stats.cache_misses.values())]))
 """
