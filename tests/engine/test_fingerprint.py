@@ -19,7 +19,8 @@ from engine import FINGERPRINT, Crowd, Model, Options, Scenario, laws, rooms, si
 from engine.kernel.step import advance
 from sweep.schema import run_key
 walking = Model(laws.Relaxation(0.5))  # compiles fastest
-scenario = Scenario(rooms.square_room(4.0, 1.0), Crowd.uniform(4, (0.0, 4.0, 0.0, 4.0)), walking, Options(time_limit=0.1))
+crowd, options = Crowd.uniform(4, (0.0, 4.0, 0.0, 4.0)), Options(time_limit=0.1)
+scenario = Scenario(rooms.square_room(4.0, 1.0), crowd, walking, options)
 simulate(scenario)
 print(json.dumps([FINGERPRINT, run_key(scenario), sum(advance.stats.cache_misses.values())]))
 """
