@@ -94,10 +94,16 @@ def law_types() -> str:
 def accuracy_levels() -> str:
     """What each level of accuracy stands for."""
     rows = (
-        (f'`"{name}"`', f"`{level.integrator}`", f"{level.fraction:g}", f"{level.force_tolerance:g} N")
+        (
+            f'`"{name}"`',
+            f"`{level.integrator}`",
+            f"{1e3 * level.longest_step:g} ms",
+            f"{level.force_tolerance:g} N",
+            f"{level.solver_tolerance:g} m/s",
+        )
         for name, level in LEVELS.items()
     )
-    return table(("accuracy", "integrator", "fraction of the longest stable step", "force tolerance"), rows)
+    return table(("accuracy", "integrator", "longest step", "force tolerance", "solver tolerance"), rows)
 
 
 def commands() -> str:
