@@ -34,6 +34,7 @@ nitpicky = True
 nitpick_ignore = [  # types of an attribute of Store that is not for users
     ("py:class", "sweep.storage.manifest.Manifest"),
     ("py:class", "sweep.storage.manifest.Entry"),
+    ("py:class", "engine.options.Made"),  # a type variable
 ]
 nitpick_ignore_regex = [  # no inventory of another project is fetched: the build needs no network
     *(
