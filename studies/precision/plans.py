@@ -52,7 +52,7 @@ FULL = Plan(
     steps=STEPS,
     tolerances=(1e-3, 1e-2, 0.3),
     seeds=3,
-    stretch=5.0,
+    stretch=3.0,
     gas_time=20.0,
     cells=(
         certified("lin_room", 1.0, 100, seeds=400),
@@ -63,7 +63,7 @@ FULL = Plan(
         certified("parisi_room", 4.0, 200, seeds=300),
         certified("parisi_room", 8.0, 200, seeds=300),
     ),
-    friction_seeds=60,
+    friction_seeds=24,
     speed_ups=(("parisi_room", 4.0, 200, 3), ("lin_room", 1.6, 100, 5)),
     repeats=5,
     compiling=True,
