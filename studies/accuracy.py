@@ -41,7 +41,7 @@ def measure(plan: Plan, store: Path, jobs: int) -> Results:
     speed_ups = spread(levels.speed_up, plan.speed_ups, jobs)
     _say("what skipping saves")
     saved = savings.measure(plan.stretch, plan.repeats, plan.compiling)
-    return Results(found, drifts, judged, frictions, levels.levels(found, judged), speed_ups, saved)
+    return Results(found, drifts, judged, frictions, levels.levels(found), speed_ups, saved)
 
 
 def main(quick: bool = False, jobs: int = 2, docs: bool = False, more: int = 1) -> None:

@@ -8,6 +8,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 
 from studies.precision.bias import MARGIN, Bias
 from studies.precision.cells import Cell, Judged
@@ -79,6 +80,7 @@ def _panel(axis: Axes, found: Found, tolerances: list[float]) -> None:
     if found.floor > 0.0:
         axis.axhline(found.floor, color="black", lw=0.7, ls=":")
     axis.set(xscale="log", yscale="log", title=_title(found.case.room, found.case.v_d, f"t = {found.case.time:g} s"))
+    axis.xaxis.set_minor_formatter(NullFormatter())
     axis.margins(x=0.12, y=0.1)
     axis.set_xlabel("CPU seconds per simulated second")
 

@@ -8,7 +8,6 @@ from engine import Scenario
 from engine.options import LEVELS
 from engine.rooms import ROOMS
 from studies.precision import positions
-from studies.precision.cells import DEFAULT, Judged
 from studies.precision.clock import compile_kernel, timed
 from studies.precision.settings import PAPER, Setting, chosen
 
@@ -24,41 +23,29 @@ class Level(NamedTuple):
     setting: Setting
     errors: list[tuple[positions.Case, float, float]]  # median error and the floor of the case, m
     saved: list[float]  # CPU time in the jam of the paper's numerics over its own, one for each case
-    biases: list[str]  # what a comparison of statistics said
 
     @property
     def promise(self) -> str:
         """Whether the errors are below what the level says."""
         if self.name not in PROMISED:
-            return "; ".join(self.biases)
+            return "see the statistics" if self.name == STATISTICS else ""
         wrong = [error for _, error, floor in self.errors if max(error, floor) > PROMISED[self.name]]
         return "kept" if not wrong else f"NOT kept in {len(wrong)} of {len(self.errors)} cases"
 
 
-def levels(found: Iterable[positions.Found], judged: Iterable[Judged]) -> list[Level]:
+def levels(found: Iterable[positions.Found]) -> list[Level]:
     """All levels and the paper's numerics, for all rooms that were measured."""
-    found, judged = list(found), list(judged)
+    found = list(found)
     rooms = dict.fromkeys(f.case.room for f in found)
-    return [_level(room, name, found, judged) for room in rooms for name in (*LEVELS, PAPER)]
+    return [_level(room, name, found) for room in rooms for name in (*LEVELS, PAPER)]
 
 
-def _level(room: str, name: str, found: list[positions.Found], judged: list[Judged]) -> Level:
+def _level(room: str, name: str, found: list[positions.Found]) -> Level:
     setting, paper = chosen(room)[name], chosen(room)[PAPER]
     here = [f for f in found if f.case.room == room]
     errors = [(f.case, f.at(setting).error, f.floor) for f in here]
     saved = [f.at(paper).cost / f.at(setting).cost for f in here]
-    trial = {STATISTICS: DEFAULT, PAPER: PAPER}.get(name)
-    biases = [_summary(j) for j in judged if j.cell.room == room and j.trial.name == trial]
-    return Level(room, name, setting, errors, saved, biases)
-
-
-def _summary(judged: Judged) -> str:
-    """Which statistics of a cell are shown to be within their margin."""
-    said: dict[str, list[str]] = {}
-    for bias in judged.biases:
-        said.setdefault(bias.verdict, []).append(bias.quantity)
-    words = "; ".join(f"{verdict}: {', '.join(names)}" for verdict, names in said.items())
-    return f"v_d = {judged.cell.v_d:g} m/s, N = {judged.cell.N}: {words}"
+    return Level(room, name, setting, errors, saved)
 
 
 class SpeedUp(NamedTuple):
