@@ -187,7 +187,7 @@ def test_a_scheduler_means_dask_and_a_back_end_of_the_command_line_sets_the_file
 
 def test_a_time_out_of_the_file_ends_a_run(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     store = tmp_path / "late"
-    grid = "[constants]\nN = 150\n[running]\njobs = 1\ntimeout = 0.001\n"
+    grid = "[constants]\nN = 150\ndt = 1e-5\n[running]\njobs = 1\ntimeout = 0.001\n"
     path = grid_file(tmp_path, grid)
     path.write_text(path.read_text("utf-8").replace('"results"', json.dumps(str(store))), "utf-8")
     assert jamsweep("sweep", path) == 1
